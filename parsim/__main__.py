@@ -1,0 +1,249 @@
+"""The commands. Parsing only: each command hands over to the part that does the work, imported when it is asked for."""
+
+import functools
+import os
+import sys
+import time
+import traceback
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from parsim import __version__
+from parsim.errors import InputError, WriteError
+
+DONE, FAILED, BAD_INPUT, CANNOT_WRITE, INTERRUPTED = 0, 1, 2, 74, 130
+
+app = typer.Typer(
+    help="Free-surface flow carrying solids. SI units; exit codes: 0 done, 1 failed, 2 bad input, 3 a comparison "
+    "missed, 74 cannot write, 75 checkpoint written.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
+Folder = Annotated[Path, typer.Argument(metavar="OUT", help="output folder of a run")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="replace one value, e.g. spacing=0.002 or bodies.A1.density=900"),
+]
+Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
+
+
+def main(arguments=None):
+    """Run the command in `arguments` (default: those of the process); returns the exit code."""
+    try:
+        app(args=arguments, prog_name="parsim")
+    except SystemExit as ending:
+        return ending.code if isinstance(ending.code, int) else FAILED
+    return DONE
+
+
+def command(function):
+    """Make `function` a command: what it returns, or the error it raises, becomes the exit code."""
+
+    @functools.wraps(function)
+    def guarded(*positional, **named):
+        raise typer.Exit(_exit_code(functools.partial(function, *positional, **named)))
+
+    app.command()(guarded)
+    return function
+
+
+def _exit_code(work):
+    from parsim.launch import world
+
+    rank, size = world()
+    try:
+        return work() or DONE
+    except InputError as error:
+        if rank == 0:
+            print(*(f"error: {message}" for message in error.messages), sep="\n", file=sys.stderr, flush=True)
+        return _together(BAD_INPUT)
+    except WriteError as error:
+        print(f"error: {error}", file=sys.stderr, flush=True)
+        return _together(CANNOT_WRITE)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        raise  # the reader of a pipe has left: the command line ends quietly
+    except Exception:
+        print(f"error: rank {rank} of {size} failed", file=sys.stderr)
+        traceback.print_exc()
+        return _abort(FAILED)
+
+
+def _world():
+    """The world communicator if MPI is running here with several ranks, else None."""
+    mpi = sys.modules.get("mpi4py.MPI")
+    return mpi.COMM_WORLD if mpi and mpi.Is_initialized() and mpi.COMM_WORLD.Get_size() > 1 else None
+
+
+def _together(code, patience=2.0):
+    """Return `code` once every rank is about to end; end the job if one is not, for it would wait for this one."""
+    world = _world()
+    if world:
+        everyone, start = world.Ibarrier(), time.monotonic()
+        while not everyone.Test():
+            if time.monotonic() - start > patience:
+                return _abort(code)
+            time.sleep(0.01)
+    return code
+
+
+def _abort(code):
+    """End all ranks at once; a rank that fails alone would leave the others waiting for ever."""
+    world = _world()
+    if world:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        world.Abort(code)
+    return code
+
+
+def _load(case, changes, until=None):
+    from parsim.case import load
+
+    return load(case, [*(changes or ()), *([] if until is None else [f"run.until={until!r}"])])
+
+
+@command
+def run(
+    case: CaseFile,
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="output folder, made by the run")],
+    until: Until = None,
+    changes: Changes = None,
+    force: Annotated[bool, typer.Option("--force", help="overwrite an output folder")] = False,
+    threads: Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")] = None,
+    ranks: Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")] = None,
+):
+    """Run a case. Under mpirun or srun every rank runs this command."""
+    if threads:
+        os.environ["NUMBA_NUM_THREADS"] = str(threads)
+    loaded = _load(case, changes, until)
+    if ranks:
+        words = ["run", case, "-o", out, *(word for change in changes or () for word in ("--set", change))]
+        return _launched(ranks, words + (["--until", repr(until)] if until is not None else []) + ["--force"] * force)
+    from parsim.warm import prepare
+
+    prepare()  # before the solver brings up MPI
+    from parsim.solver import run as solve
+
+    return solve(loaded, case, out, force)
+
+
+def _launched(ranks, words):
+    from parsim.launch import mpirun, world
+
+    if world()[1] > 1:
+        raise InputError(f"-n {ranks}: {world()[1]} processes of this command are running already; leave -n out")
+    return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)])
+
+
+@command
+def check(
+    case: CaseFile,
+    changes: Changes = None,
+    until: Until = None,
+    ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")] = 1,
+):
+    """Check a case and estimate its size, memory and time, without running it."""
+    from parsim.estimate import lines
+
+    loaded = _load(case, changes, until)
+    print(f"{case}: a valid case", *lines(loaded, ranks), sep="\n")
+    for warning in loaded.warnings():
+        print(f"warning: {warning}")
+
+
+@command
+def info(out: Folder):
+    """Say what an output folder holds."""
+    from parsim.output.reader import open as open_run
+
+    found = open_run(out)
+    told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}
+    told |= {key: _flat(value) for key, value in found.info.items() if value and isinstance(value, dict | list)}
+    frames = found.times("water")
+    told["frames"] = f"{len(frames)}, {frames[0]:g} to {frames[-1]:g} s" if len(frames) else "none"
+    told["series"] = ", ".join(found.series_names) or "none"
+    print(found.case.get("title") or out)
+    print(*(f"  {key:<10} {value}" for key, value in told.items()), sep="\n")
+
+
+def _flat(value):
+    """A table or list on one line."""
+    return "; ".join(f"{key} {value[key]}" for key in value) if isinstance(value, dict) else "; ".join(map(str, value))
+
+
+@command
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="output folder")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="output folder")],
+):
+    """Compare two output folders bit by bit; exit code 3 when they differ."""
+    from parsim.output.compare import main as compared
+
+    return compared(first, second)
+
+
+@command
+def report(out: Folder):
+    """Make tables, figures and a page from an output folder."""
+    from parsim.report import main as reported
+
+    return reported(out)
+
+
+@command
+def doctor():
+    """Say whether this machine can run parsim: packages, MPI, threads, disk."""
+    from parsim.doctor import main as examined
+
+    return examined()
+
+
+@command
+def schema():
+    """Print the JSON schema of case files, for editors that complete and check TOML."""
+    import json
+
+    from parsim.case import schema as case_schema
+
+    print(json.dumps(case_schema(), indent=2))
+
+
+@command
+def new(name: Annotated[str, typer.Argument(metavar="NAME", help="writes NAME.toml")]):
+    """Write a commented case to start from; never overwrites."""
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    text = Path(__file__).with_name("starter.toml").read_text(encoding="utf-8")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise InputError(f"NAME = {name}: {path} exists already and is not overwritten; choose another name") from None
+    except (OSError, ValueError) as error:
+        raise WriteError(path, getattr(error, "strerror", None) or error) from None
+    print(f"wrote {path}; next: parsim check {path}")
+
+
+def _version(asked: bool):
+    if asked:
+        print(f"parsim {__version__}")
+        raise typer.Exit()
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="print the version and end")
+    ] = False,
+):
+    """Options of the program as a whole."""
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Walls, gates, periodic sides."""

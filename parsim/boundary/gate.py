@@ -1,0 +1,68 @@
+"""A plate across the whole box that rises at constant speed, thinner than the support of the water.
+
+The waters on its two sides must not see each other through it: each side meets its own samples, up to a whole support
+deep, and pairs that the plate hides are taken out of the lists (`parsim.neighbours`).
+"""
+
+import math
+
+import numpy as np
+
+from parsim.boundary.wall import lattice_axis, samples_of
+from parsim.state import GATE_DOWN, GATE_UP, Particles
+
+
+class Gate:
+    """Motion of the plate. Attributes: min_x, max_x, m, its faces."""
+
+    def __init__(self, case):
+        gate = case.gate
+        self.min_x, self.max_x = gate.min_x, gate.max_x
+        self._floor = case.box.min[2]
+        self._lowest = gate.bottom
+        self._speed, self._opens = gate.speed, gate.opens
+
+    def bottom(self, time):
+        """Height of the lower edge at `time`, m."""
+        return self._lowest + self._speed * max(time - self._opens, 0.0)
+
+    def velocity(self, time):
+        """Upward speed at `time`, m/s."""
+        return self._speed if time > self._opens else 0.0
+
+    def barrier(self, time):
+        """Height above which the plate hides, m: everything while it stands on the floor."""
+        return -math.inf if self.closed(time) else self.bottom(time)
+
+    def closed(self, time):
+        """Whether the plate stands on the floor at `time`, s."""
+        return self.bottom(time) <= self._floor
+
+
+class GateSamples:
+    """The samples that each side of the gate shows to the water, a lattice that hangs on the plate."""
+
+    def __init__(self, case, gate, layers):
+        self.gate, self._case, self._layers = gate, case, layers
+
+    def samples(self, slab, time):
+        """Samples of the slab at `time`, s: Particles with the row above the edge as `sample`."""
+        case, l0 = self._case, self._case.spacing
+        begin = -self._layers if self.gate.closed(time) else 0
+        rows = np.arange(begin, math.ceil((case.box.max[2] - self.gate.bottom(time)) / l0))
+        across, _ = lattice_axis(case, 1, self._layers)
+        depth = (np.arange(self._layers) + 0.5) * l0
+        parts = []
+        for kind, x in ((GATE_UP, self.gate.min_x + depth), (GATE_DOWN, self.gate.max_x - depth)):
+            part = samples_of(kind, x, across, self.gate.bottom(time) + (rows + 0.5) * l0)
+            part.sample = np.tile(rows, x.size * across.size).astype(np.int32)
+            part.w[:] = self.gate.velocity(time)
+            parts.append(part)
+        both = Particles.join(parts)
+        return both.take(slab.awake(slab.cells(both.x, both.y, both.z)))
+
+    def place(self, p, time):
+        """Move the samples among the particles `p` to where the plate is at `time`."""
+        at = np.flatnonzero((p.kind == GATE_UP) | (p.kind == GATE_DOWN))
+        p.z[at] = self.gate.bottom(time) + (p.sample[at] + 0.5) * self._case.spacing
+        p.w[at] = self.gate.velocity(time)

@@ -1,0 +1,153 @@
+"""Checks of a case's bodies, materials, gate and gauges. Each takes a completed case and returns messages."""
+
+from difflib import get_close_matches
+
+from parsim import case_geometry as geometry
+
+TOUCH = 1e-9  # m: a smaller overlap is rounding
+
+
+def thinnest(case, body):
+    """Length of the shortest edge of a body, m."""
+    return min(body.shape.size[axis] for axis in case.axes)
+
+
+def particles_across(case, body):
+    """Number of particles across the thinnest side of a body."""
+    return round(thinnest(case, body) / case.spacing)
+
+
+def placed(case):
+    """The bodies that have a place (a body that cannot float has none)."""
+    return [body for body in case.bodies if body.position[2] != "float"]
+
+
+def names(case):
+    """Names are unique."""
+    faults = []
+    for key, entries in (("bodies", case.bodies), ("output.gauges", case.output.gauges)):
+        given = [entry.name for entry in entries]
+        doubled = sorted({name for name in given if given.count(name) > 1}) if len(set(given)) < len(given) else []
+        faults += [f'{key}: name = "{name}" is given more than once; names must differ' for name in doubled]
+    return faults
+
+
+def materials(case):
+    """Every material that is named exists."""
+    uses = [(f"bodies.{body.name}.material", body.material) for body in case.bodies]
+    if case.wall_material is not None:
+        uses.append(("wall_material", case.wall_material))
+    return [f'{key} = "{name}": {_nearest(name, case.materials)}' for key, name in uses if name not in case.materials]
+
+
+def _nearest(name, known):
+    near = get_close_matches(name, known, 1)
+    meant = f'; did you mean "{near[0]}"?' if near else ""
+    return f"no such material; allowed: {', '.join(known) or 'none, [materials.NAME] is missing'}{meant}"
+
+
+def bodies(case):
+    """Each body by itself: mass, size, place, and in 2D what a plane allows."""
+    return [f"bodies.{body.name}.{text}" for body in case.bodies for text in _body(case, body)]
+
+
+def _body(case, body):
+    if (body.density is None) == (body.mass is None):
+        given = "none is" if body.mass is None else f"density = {body.density!r} and mass = {body.mass!r} are"
+        yield f"density, mass: exactly one must be given, {given}"
+    if particles_across(case, body) < 2:
+        yield (
+            f"shape.size = {list(body.shape.size)}: thinner than two particles at spacing = {case.spacing!r}; "
+            f"its thinnest side {thinnest(case, body)!r} m must be at least 1.5 spacings"
+        )
+    if body.fixed and any((*body.velocity, *body.spin)):
+        yield f"fixed = true: velocity = {list(body.velocity)} and spin = {list(body.spin)} must then be zero"
+    if case.dimensions == 2:
+        yield from _planar(body)
+    if body.position[2] != "float":
+        yield from _outside(case, body)
+
+
+def _planar(body):
+    if body.shape.size[1] != 1.0:
+        yield f"shape.size = {list(body.shape.size)}: y must be 1 in a 2D case"
+    if body.position[1] != 0.5:
+        yield f"position = {list(body.position)}: y must be 0.5 in a 2D case"
+    if body.velocity[1]:
+        yield f"velocity = {list(body.velocity)}: y must be 0 in a 2D case"
+    for key, value in (("angles", body.angles), ("spin", body.spin)):
+        if value[0] or value[2]:
+            yield f"{key} = {list(value)}: x and z must be 0 in a 2D case; bodies turn about y only"
+
+
+def _outside(case, body):
+    corners = geometry.of_body(body).corners
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    for axis in case.axes:
+        name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
+        if getattr(case.box.faces, f"{name}_min") == "periodic":
+            low[axis] = high[axis] = body.position[axis]
+        if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
+            yield (
+                f"position = {list(body.position)}: outside the box, reaches from {name} = {low[axis]:.6g} to "
+                f"{high[axis]:.6g}; allowed {least!r} to {most!r}"
+            )
+
+
+def overlaps(case):
+    """No body is inside another or inside the gate."""
+    present = placed(case)
+    boxes = [geometry.of_body(body) for body in present]
+    period = [_period(case, axis) for axis in range(3)]
+    faults = []
+    for i, j, shift in geometry.near_pairs(boxes, period):
+        depth = geometry.overlap(boxes[i], boxes[j], shift)
+        if depth > TOUCH:
+            faults.append(f"bodies.{present[j].name}: overlaps bodies.{present[i].name} by {depth:.3g} m")
+    for body, box in zip(present, boxes, strict=True) if case.gate else ():
+        depth = geometry.overlap(box, _gate_box(case))
+        if depth > TOUCH:
+            faults.append(
+                f"bodies.{body.name}: is in the gate, x = {case.gate.min_x!r} to {case.gate.max_x!r}, by {depth:.3g} m"
+            )
+    return faults
+
+
+def _period(case, axis):
+    name = "xyz"[axis]
+    return case.box.size[axis] if getattr(case.box.faces, f"{name}_min") == "periodic" else 0.0
+
+
+def _gate_box(case):
+    """Where the gate is at the start; it reaches above the box."""
+    gate, low, high = case.gate, case.box.min, case.box.max
+    bottom = gate.bottom + gate.speed * max(0.0, case.start - gate.opens)
+    return geometry.upright((gate.min_x, low[1], bottom), (gate.max_x, high[1], max(high[2], bottom) + 1.0))
+
+
+def gate(case):
+    """The gate is a plate within the tank, between walls."""
+    if case.gate is None:
+        return []
+    plate, low, high, faults = case.gate, case.box.min, case.box.max, []
+    if not plate.min_x < plate.max_x:
+        faults.append(f"gate.max_x = {plate.max_x!r}: must be greater than gate.min_x = {plate.min_x!r}")
+    for key, value, axis in (("min_x", plate.min_x, 0), ("max_x", plate.max_x, 0), ("bottom", plate.bottom, 2)):
+        if not low[axis] <= value <= high[axis]:
+            faults.append(f"gate.{key} = {value!r}: outside the tank; must be {low[axis]!r} to {high[axis]!r}")
+    needed = ("x_min", "x_max", "z_min") + (("y_min", "y_max") if case.dimensions == 3 else ())
+    wrong = [f'{face} = "{kind}"' for face in needed if (kind := getattr(case.box.faces, face)) != "wall"]
+    if wrong:
+        faults.append(f'gate: needs walls around it, but box.faces has {", ".join(wrong)}; must be "wall"')
+    return faults
+
+
+def gauges(case):
+    """Gauges stand in the box."""
+    return [
+        f"output.gauges.{gauge.name}.{'xyz'[axis]} = {value!r}: outside the box; must be "
+        f"{case.box.min[axis]!r} to {case.box.max[axis]!r}"
+        for gauge in case.output.gauges
+        for axis, value in enumerate((gauge.x, gauge.y))
+        if not case.box.min[axis] <= value <= case.box.max[axis]
+    ]

@@ -1,0 +1,160 @@
+"""What is wrong with a case file's keys and values, in words: key path, value, what is allowed, nearest name."""
+
+from copy import deepcopy
+from difflib import get_close_matches
+from typing import get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from parsim.errors import InputError
+
+_ALLOWED = {
+    "missing": "missing",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "bool_type": "must be true or false",
+    "string_type": "must be a text",
+    "string_unicode": "must be a text in UTF-8",
+    "finite_number": "must be a finite number",
+    "tuple_type": "must be a list",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+    "literal_error": "must be {expected}",
+    "greater_than": "must be greater than {gt}",
+    "greater_than_equal": "must be at least {ge}",
+    "less_than": "must be less than {lt}",
+    "less_than_equal": "must be at most {le}",
+    "too_long": "must have {max_length} entries",
+    "string_pattern_mismatch": "must be a letter followed by letters, digits, _ or - (64 at most)",
+}
+
+
+def validated(model, data):
+    """(`model` made from the nested dict `data`, messages about its unknown keys).
+
+    A misspelt key is reported, then read as the key it resembles, so that everything else is checked too.
+    Raises InputError if there is more wrong than unknown keys.
+    """
+    messages, data = [], deepcopy(data)
+    while True:
+        try:
+            return model.model_validate(data), messages
+        except ValidationError as error:
+            faults = error.errors(include_url=False)
+        unknown = [fault["loc"] for fault in faults if fault["type"] == "extra_forbidden"]
+        if not unknown:
+            raise InputError(messages + _described(model, data, faults))
+        messages += [_mended(model, data, place) for place in unknown]
+
+
+def _mended(model, data, place):
+    """Message about the unknown key at `place`; renames it in `data` to what was meant, or drops it."""
+    table = _value_at(data, place[:-1])
+    value = table.pop(place[-1])
+    known = list(_model_at(model, place[:-1]).model_fields)
+    path = key_path(data, place)
+    near = get_close_matches(place[-1], known, 1, cutoff=0.7)
+    if near:
+        table.setdefault(near[0], value)
+        return f"{path}: unknown key; did you mean {key_path(data, (*place[:-1], near[0]))}?"
+    elsewhere = dict(_all_keys(model))
+    near = get_close_matches(place[-1], elsewhere, 1, cutoff=0.8)
+    hint = f"; did you mean {elsewhere[near[0]]}?" if near else ""
+    return f"{path}: unknown key{hint or '; allowed: ' + ', '.join(known)}"
+
+
+def _described(model, data, faults):
+    """One message per place; several causes at one place are alternatives."""
+    causes = {}
+    for fault in faults:
+        place = _within(data, fault["loc"], fault["type"] == "missing")
+        text = _ALLOWED.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))
+        causes.setdefault(place, []).append(text)
+    return [_message(model, data, place, texts) for place, texts in causes.items()]
+
+
+def _message(model, data, place, texts):
+    path, meaning = key_path(data, place), _description(model, place)
+    if "missing" in texts:
+        return f"{path}: missing; {meaning}" if meaning else f"{path}: missing; required"
+    allowed = " or ".join(text if i == 0 else text.removeprefix("must be ") for i, text in enumerate(texts))
+    return f"{path} = {short(_value_at(data, place))}: {allowed}" + (f" ({meaning})" if meaning else "")
+
+
+def short(value):
+    """A value for a message, cut when long."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def key_path(data, place):
+    """Key path such as bodies.A1.density; list entries by name where they have one."""
+    words, value = [], data
+    for step in place:
+        value = _step(value, step)
+        name = value.get("name") if isinstance(step, int) and isinstance(value, dict) else None
+        words.append(name if isinstance(name, str) else str(step))
+    return ".".join(words)
+
+
+def _step(value, step):
+    try:
+        return value[step]
+    except (KeyError, IndexError, TypeError):
+        return None
+
+
+def _value_at(data, place):
+    for step in place:
+        data = _step(data, step)
+    return data
+
+
+def _within(data, place, missing):
+    """The leading part of `place` that exists in `data` (pydantic adds steps of its own for unions and keys)."""
+    inside = len(place) - 1 if missing else len(place)
+    for depth in range(inside):
+        here = _value_at(data, place[:depth])
+        step = place[depth]
+        exists = step in here if isinstance(here, dict) else isinstance(here, list) and isinstance(step, int)
+        if not exists:
+            return place[:depth]
+    return place
+
+
+def _inner(annotation):
+    """The table model inside an annotation such as Gate | None, tuple[Body, ...] or dict[str, Material], or None."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(_inner, get_args(annotation))), None)
+
+
+def _model_at(model, place):
+    """The table model at `place` below `model`; steps that choose an entry of a list or table are passed over."""
+    steps = iter(place)
+    for step in steps:
+        annotation = model.model_fields[step].annotation
+        if get_origin(annotation) in (tuple, dict):
+            next(steps, None)
+        model = _inner(annotation)
+    return model
+
+
+def _description(model, place):
+    """What the key at `place` means, from the model, or an empty text."""
+    names = [i for i, step in enumerate(place) if isinstance(step, str)]
+    if not names:
+        return ""
+    table = _model_at(model, place[: names[-1]])
+    field = table.model_fields.get(place[names[-1]])
+    return field.description if field else ""
+
+
+def _all_keys(model, path=""):
+    """(key, full path) of every key of every table, the nearest to the top last."""
+    for name, field in reversed(model.model_fields.items()):
+        inner = _inner(field.annotation)
+        if inner:
+            many = ".NAME" if get_origin(field.annotation) in (tuple, dict) else ""
+            yield from _all_keys(inner, f"{path}{name}{many}.")
+        yield name, path + name

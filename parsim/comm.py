@@ -1,0 +1,74 @@
+"""Messages between ranks: the only file that imports mpi4py."""
+
+import numpy as np
+from mpi4py import MPI
+
+
+class Comm:
+    """The world communicator, with the ring of slabs: each rank has a left and a right neighbour, or none."""
+
+    def __init__(self, ring=False):
+        self._mpi = MPI.COMM_WORLD
+        self.rank, self.size = self._mpi.Get_rank(), self._mpi.Get_size()
+        last = self.size - 1
+        self.left = self.rank - 1 if self.rank > 0 else (last if ring else None)
+        self.right = self.rank + 1 if self.rank < last else (0 if ring else None)
+
+    @property
+    def library(self):
+        """Version line of the MPI library."""
+        return MPI.Get_library_version().split("\n")[0].strip("\0 ")
+
+    def exchange(self, to_left, to_right):
+        """Send arrays of any length to both neighbours; returns (from left, from right), empty where there is none."""
+        sizes = self.exchange_fixed(
+            np.array([to_left.size]), np.array([to_right.size]), np.zeros(1, np.int64), np.zeros(1, np.int64)
+        )
+        received = [np.empty(int(size[0]), to_left.dtype) for size in sizes]
+        return self.exchange_fixed(to_left, to_right, *received)
+
+    def exchange_fixed(self, to_left, to_right, from_left, from_right):
+        """The same into given buffers whose lengths the ranks already know; returns the two buffers."""
+        requests = []
+        if self.left is not None:
+            requests.append(self._mpi.Irecv(from_left, self.left, tag=1))
+        if self.right is not None:
+            requests.append(self._mpi.Irecv(from_right, self.right, tag=2))
+        if self.left is not None:
+            requests.append(self._mpi.Isend(to_left, self.left, tag=2))
+        if self.right is not None:
+            requests.append(self._mpi.Isend(to_right, self.right, tag=1))
+        MPI.Request.Waitall(requests)
+        return from_left, from_right
+
+    def sum_integers(self, array):
+        """All-reduced sum of an int64 array, exact in any order."""
+        result = np.empty_like(array)
+        self._mpi.Allreduce(array, result, MPI.SUM)
+        return result
+
+    def max(self, values):
+        """All-reduced element-wise maximum of floats."""
+        result = np.empty(len(values))
+        self._mpi.Allreduce(np.asarray(values, float), result, MPI.MAX)
+        return result
+
+    def share(self, item):
+        """What rank 0 holds, on every rank."""
+        return self._mpi.bcast(item)
+
+    def stream(self, array):
+        """On rank 0 yields the array of each rank in turn, one at a time (bounded memory); nothing elsewhere."""
+        if self.rank:
+            self._mpi.send(array.shape, 0, tag=3)
+            self._mpi.Send(array, 0, tag=4)
+            return
+        yield array
+        for source in range(1, self.size):
+            block = np.empty(self._mpi.recv(source=source, tag=3), array.dtype)
+            self._mpi.Recv(block, source, tag=4)
+            yield block
+
+    def gather(self, item):
+        """List of every rank's picklable item on rank 0, None elsewhere."""
+        return self._mpi.gather(item)

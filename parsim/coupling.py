@@ -1,0 +1,118 @@
+"""Water on bodies, bodies on water: the samples that a body shows to the water, and the loads they bring back."""
+
+import math
+
+import numpy as np
+
+from parsim.jit import kernel
+from parsim.solid.rotation import matrices
+from parsim.state import BODY, Particles, make_id
+
+
+class BodySamples:
+    """Even samplings of all bodies at about the spacing, down to a support below their surface.
+
+    Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
+    the pose, never integrated.
+    """
+
+    def __init__(self, case, bodies, layers):
+        self.bodies = bodies
+        self._spacing, self._planar = case.spacing, case.dimensions == 2
+        offsets, scales, owners = [], [], []
+        for b, half in enumerate(bodies.half):
+            grid, share = self._grid(half, case.spacing * layers)
+            offsets.append(grid)
+            scales.append(np.full(len(grid), share))
+            owners.append(np.full(len(grid), b, np.int32))
+        self.offsets = np.concatenate([np.zeros((0, 3)), *offsets])
+        self.scale = np.concatenate([np.zeros(0), *scales])
+        self.body = np.concatenate([np.zeros(0, np.int32), *owners])
+
+    def _grid(self, half, depth):
+        """Offsets (n, 3) of one box's samples, m, and the share of a lattice volume that each carries."""
+        l0 = self._spacing
+        counts = [max(round(2.0 * h / l0), 1) for h in half]
+        if self._planar:
+            counts[1] = 1
+        axes = [((np.arange(n) + 0.5) / n * 2.0 - 1.0) * h for n, h in zip(counts, half, strict=True)]
+        grid = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+        used = [0, 2] if self._planar else [0, 1, 2]
+        inner = np.min(half[used] - np.abs(grid[:, used]), axis=1)
+        share = math.prod(2.0 * half[a] / counts[a] / l0 for a in used)
+        return grid[inner < depth], share
+
+    def __len__(self):
+        return len(self.offsets)
+
+    def samples(self, slab, time):
+        """Body samples of the slab that may see water."""
+        x, y, z = (np.empty(len(self)) for _ in range(3))
+        turn = matrices(self.bodies.quaternion)
+        locate(self.offsets, self.body, self.bodies.position, turn, x, y, z)
+        at = np.flatnonzero(slab.awake(slab.cells(x, y, z)))
+        return Particles(at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x[at], y=y[at],
+                         z=z[at], scale=self.scale[at])
+
+    def place(self, p, position, quaternion):
+        """Put the body samples among the particles `p`, halo included, where the given pose has them.
+
+        Velocity and acceleration are those of the rigid motion; returns nothing.
+        """
+        b = self.bodies
+        place_samples(p.kind, p.body, p.sample, self.offsets, position, matrices(quaternion), b.velocity, b.spin,
+                      b.acceleration, b.angular_acceleration, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az)
+
+    def loads(self, domain, near, force, centre):
+        """Exact force and torque about `centre` (bodies, 3) on each body (bodies, 6), N and N m, over all ranks."""
+        p, at = domain.particles, near.body
+        each = np.empty((at.size, 6))
+        levers(at, p.body, p.x, p.y, p.z, centre, force, each)
+        return domain.sum(each, p.body[at], len(centre))
+
+
+@kernel
+def locate(offsets, body, position, turn, x, y, z):
+    """Global positions of samples: centre plus turned offset."""
+    for s in range(body.size):
+        b = body[s]
+        o = offsets[s]
+        x[s] = position[b, 0] + (turn[b, 0, 0] * o[0] + turn[b, 0, 1] * o[1] + turn[b, 0, 2] * o[2])
+        y[s] = position[b, 1] + (turn[b, 1, 0] * o[0] + turn[b, 1, 1] * o[1] + turn[b, 1, 2] * o[2])
+        z[s] = position[b, 2] + (turn[b, 2, 0] * o[0] + turn[b, 2, 1] * o[1] + turn[b, 2, 2] * o[2])
+
+
+@kernel
+def place_samples(kind, body, sample, offsets, position, turn, velocity, spin, acceleration, angular, x, y, z, u, v, w,
+                  ax, ay, az):
+    """Position, velocity and acceleration of every body sample from the rigid motion of its body."""
+    for i in range(kind.size):
+        if kind[i] != BODY:
+            continue
+        b = body[i]
+        o = offsets[sample[i]]
+        dx = turn[b, 0, 0] * o[0] + turn[b, 0, 1] * o[1] + turn[b, 0, 2] * o[2]
+        dy = turn[b, 1, 0] * o[0] + turn[b, 1, 1] * o[1] + turn[b, 1, 2] * o[2]
+        dz = turn[b, 2, 0] * o[0] + turn[b, 2, 1] * o[1] + turn[b, 2, 2] * o[2]
+        x[i], y[i], z[i] = position[b, 0] + dx, position[b, 1] + dy, position[b, 2] + dz
+        p, q, r = spin[b]
+        du, dv, dw = q * dz - r * dy, r * dx - p * dz, p * dy - q * dx
+        u[i], v[i], w[i] = velocity[b, 0] + du, velocity[b, 1] + dv, velocity[b, 2] + dw
+        e, f, g = angular[b]
+        ax[i] = acceleration[b, 0] + (f * dz - g * dy) + (q * dw - r * dv)
+        ay[i] = acceleration[b, 1] + (g * dx - e * dz) + (r * du - p * dw)
+        az[i] = acceleration[b, 2] + (e * dy - f * dx) + (p * dv - q * du)
+
+
+@kernel
+def levers(at, body, x, y, z, centre, force, out):
+    """Force and torque about the body's centre of each sample `at`: rows of out (n, 6)."""
+    for row in range(at.size):
+        i = at[row]
+        b = body[i]
+        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        fx, fy, fz = force[row]
+        out[row, 0], out[row, 1], out[row, 2] = fx, fy, fz
+        out[row, 3] = dy * fz - dz * fy
+        out[row, 4] = dz * fx - dx * fz
+        out[row, 5] = dx * fy - dy * fx

@@ -1,0 +1,245 @@
+"""Slabs of whole cell layers: who owns what, halos, migration, balance, exact sums.
+
+Models know three verbs of a domain: `refresh(*fields)`, `sum`, `max`; they never see a rank. Memory of a rank reads
+left halo | owned | right halo, sorted by (cell, id), so that a halo is one contiguous slice and a particle meets its
+neighbours in the same order on any number of ranks.
+"""
+
+import numpy as np
+
+from parsim import exact
+from parsim.cells import REACH, occupied, sort_by_cell, spread
+from parsim.jit import kernel
+from parsim.state import POSITION, Particles
+
+_UNEVEN = 1.02  # largest share of the work over the mean that leaves the cuts alone
+
+
+class Slab:
+    """Layers `begin` to `end` and which of their cells water can reach: what a source of samples needs to know."""
+
+    def __init__(self, grid, begin, end, marks):
+        self.begin, self.end = begin, end
+        self._grid, self._marks = grid, marks
+
+    def cells(self, x, y, z):
+        """Cell of each point (n,) within the slab, -1 for points of other slabs."""
+        cell = self._grid.cell(x, y, z, self.begin)
+        return np.where((cell >= 0) & (cell < self._marks.size), cell, -1)
+
+    def awake(self, cells):
+        """Which of `cells` (n,) are in the slab and within reach of water: bool (n,)."""
+        return (cells >= 0) & (self._marks[cells] == 1)
+
+
+class Domain:
+    """One rank's slab. `particles` holds halo and owned, `own` the slice of owned ones, `first` the cell offsets."""
+
+    def __init__(self, grid, comm, sources, cuts=None):
+        self.grid, self.comm, self.sources = grid, comm, sources
+        self.cuts = np.linspace(0, grid.layers, comm.size + 1).round().astype(np.int64) if cuts is None else cuts
+        self.lost = 0
+
+    @property
+    def layers(self):
+        """First layer owned and the one past the last."""
+        return int(self.cuts[self.comm.rank]), int(self.cuts[self.comm.rank + 1])
+
+    def rebuild(self, fluid, time):
+        """Take the owned fluid (Particles), migrate it, add boundary samples and images, sort, fill the halos.
+
+        Before: `fluid` may lie anywhere. After: `particles`, `own`, `first` and the halo slices are new, and all
+        earlier indices are void.
+        """
+        fluid = self._migrate(self._wrap(fluid))
+        slab = Slab(self.grid, *self.layers, self._awake(fluid))
+        parts = [fluid, *(source.samples(slab, time) for source in self.sources)]
+        self._assemble(self._with_images(Particles.join(parts)))
+
+    def refresh(self, *names):
+        """Bring `names` up to date in the images and halos."""
+        p = self.particles
+        for name in names:
+            shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
+            copy_images(getattr(p, name), self._image_at, self._image_of, shift)
+        count = len(names)
+        to_left = np.empty((count, self._send_left.stop - self._send_left.start))
+        to_right = np.empty((count, self._send_right.stop - self._send_right.start))
+        from_left = np.empty((count, self.own.start))
+        from_right = np.empty((count, len(p) - self.own.stop))
+        for k, name in enumerate(names):
+            to_left[k] = getattr(p, name)[self._send_left]
+            to_right[k] = getattr(p, name)[self._send_right]
+        self.comm.exchange_fixed(to_left, to_right, from_left, from_right)
+        for k, name in enumerate(names):
+            field = getattr(p, name)
+            field[: self.own.start] = from_left[k]
+            field[self.own.stop :] = from_right[k]
+            if name == "x":
+                field[: self.own.start] += self._period_left
+                field[self.own.stop :] += self._period_right
+
+    def sum(self, values, index=None, count=1):
+        """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,)."""
+        values = np.ascontiguousarray(values, float)
+        rows = np.zeros(len(values), np.int64) if index is None else index
+        limbs = np.zeros((count, values.shape[1], 2), np.int64)
+        good = exact.accumulate(values, rows, limbs)
+        total = exact.value(self.comm.sum_integers(limbs))
+        if not good:
+            total[:] = np.nan
+        return total[0] if index is None else total
+
+    def count(self, *numbers):
+        """Sums over all ranks of whole numbers."""
+        return [int(n) for n in self.comm.sum_integers(np.array(numbers, np.int64))]
+
+    def max(self, *values):
+        """Largest over all ranks, element by element."""
+        return self.comm.max(values)
+
+    def balance(self, lengths):
+        """Move the cuts to equal work, counted as listed pairs, `lengths` (particles,); the next rebuild acts on it."""
+        begin, end = self.layers
+        lengths = lengths[self.own] + 8
+        work = np.zeros(self.grid.layers, np.int64)
+        for layer in range(begin, end):
+            a, b = (self.first[(layer - begin + REACH + k) * self.grid.per_layer] - self.own.start for k in (0, 1))
+            work[layer] = lengths[a:b].sum()
+        work = self.comm.sum_integers(work)
+        shares = np.add.reduceat(work, self.cuts[:-1])
+        if shares.max() * self.comm.size > _UNEVEN * work.sum():
+            self.cuts = even_cuts(work, self.comm.size)
+
+    def _wrap(self, fluid):
+        """Periodic positions back into the box; what left the grid is counted as lost and taken out."""
+        outside = np.zeros(len(fluid), bool)
+        for axis, name in enumerate(POSITION):
+            field = getattr(fluid, name)
+            if self.grid.periodic[axis]:
+                period, low = self.grid.period[axis], self.grid.low[axis]
+                field[field < low] += period
+                field[field >= low + period] -= period
+                field[field < low] = low
+            else:
+                outside |= ~((field >= self.grid.low[axis]) & (field < self.grid.high[axis]))
+        self.lost += int(outside.sum())
+        return fluid.take(~outside) if outside.any() else fluid
+
+    def _migrate(self, fluid):
+        """Pass particles from neighbour to neighbour until each is in its slab: one hop unless the cuts moved."""
+        while self.comm.size > 1:
+            begin, end = self.layers
+            layer = self.grid.layer(fluid.x)
+            middle = (begin + end) // 2
+            away = (layer < begin) | (layer >= end)
+            if self.grid.periodic[0]:  # the shorter way round
+                offset = (layer - middle) % self.grid.layers
+                leftward = away & (offset > self.grid.layers // 2)
+            else:
+                leftward = layer < begin
+            rightward = away & ~leftward
+            if self.max(float(away.any()))[0] == 0.0:
+                break
+            received = self.comm.exchange(fluid.take(leftward).pack(), fluid.take(rightward).pack())
+            fluid = Particles.join([fluid.take(~away), *(Particles.unpack(buffer) for buffer in received)])
+        return fluid
+
+    def _awake(self, fluid):
+        """Flat marks of the slab's cells within reach of fluid, that of the neighbouring slabs included."""
+        begin, end = self.layers
+        g = self.grid
+        marks = occupied(fluid.x, fluid.y, fluid.z, g.origin, g.edge, g.count, begin, end - begin)
+        for axis in (1, 2):  # images are fluid too
+            if g.periodic[axis]:
+                marks = np.moveaxis(marks, axis, 0)
+                marks[:REACH] |= marks[-2 * REACH : -REACH]
+                marks[-REACH:] |= marks[REACH : 2 * REACH]
+                marks = np.ascontiguousarray(np.moveaxis(marks, 0, axis))
+        left, right = self.comm.exchange(marks[:REACH].ravel(), marks[-REACH:].ravel())
+        padded = np.zeros((end - begin + 2 * REACH, *marks.shape[1:]), np.uint8)
+        padded[REACH:-REACH] = marks
+        if left.size:
+            padded[:REACH] = left.reshape(REACH, *marks.shape[1:])
+        if right.size:
+            padded[-REACH:] = right.reshape(REACH, *marks.shape[1:])
+        return spread(padded, REACH)[REACH:-REACH].ravel()
+
+    def _with_images(self, particles):
+        """Add the images of particles within REACH cells of a periodic side in y and z (corners included)."""
+        for axis in (1, 2):
+            if not self.grid.periodic[axis]:
+                continue
+            field = getattr(particles, POSITION[axis])
+            low, period = self.grid.low[axis], self.grid.period[axis]
+            reach = REACH * self.grid.edge[axis]
+            copies = []
+            for near, shift in ((field < low + reach, period), (field >= low + period - reach, -period)):
+                copy = particles.take(near)
+                setattr(copy, POSITION[axis], getattr(copy, POSITION[axis]) + shift)
+                copy.image[:] = 1
+                copies.append(copy)
+            particles = Particles.join([particles, *copies])
+        return particles
+
+    def _assemble(self, owned):
+        """Sort the owned particles, exchange the layers next to the cuts, and note the slices of every refresh."""
+        g, (begin, end) = self.grid, self.layers
+        cell = g.cell(owned.x, owned.y, owned.z, begin)
+        order, first = sort_by_cell(cell, owned.id, (end - begin) * g.per_layer)
+        owned = owned.take(order)
+        block = REACH * g.per_layer
+        left_end, right_begin = int(first[block]), int(first[-block - 1])
+        halos = self.comm.exchange(owned.take(slice(0, left_end)).pack(),
+                                   owned.take(slice(right_begin, len(owned))).pack())
+        left, right = (Particles.unpack(buffer) for buffer in halos)
+        self._period_left = -g.period[0] if self.comm.rank == 0 else 0.0
+        self._period_right = g.period[0] if self.comm.rank == self.comm.size - 1 else 0.0
+        left.x += self._period_left
+        right.x += self._period_right
+        self.own = slice(len(left), len(left) + len(owned))
+        self.particles = Particles.join([left, owned, right])
+        self._send_left = slice(self.own.start, self.own.start + left_end)
+        self._send_right = slice(self.own.start + right_begin, self.own.stop)
+        offsets = self.comm.exchange(first[: block + 1].copy(), first[-block - 1 :] - right_begin)
+        left_first, right_first = (o if o.size else np.zeros(block + 1, np.int64) for o in offsets)
+        self.first = np.concatenate([left_first[:-1], first[:-1] + self.own.start, right_first + self.own.stop])
+        self._note_images()
+
+    def _note_images(self):
+        """Owned images, the particles they copy, and the shifts between them."""
+        p, own = self.particles, np.arange(self.own.start, self.own.stop)
+        self._image_at = own[p.image[own] == 1]
+        real = own[p.image[own] == 0]
+        real = real[np.argsort(p.id[real])]
+        at = np.searchsorted(p.id[real], p.id[self._image_at]) if self._image_at.size else self._image_at
+        self._image_of = real[at]
+        self._no_shift = np.zeros(self._image_at.size)
+        self._image_shift = [self._no_shift]
+        for name, period in zip(("y", "z"), self.grid.period[1:], strict=True):
+            field = getattr(p, name)
+            offset = field[self._image_at] - field[self._image_of]
+            self._image_shift.append(np.rint(offset / period) * period if period else self._no_shift)
+
+
+def even_cuts(work, ranks):
+    """Cuts (ranks + 1,) between layers that split work (layers,) evenly, at least REACH layers each."""
+    before = np.concatenate([[0], np.cumsum(work)])
+    cuts = np.searchsorted(before, before[-1] * np.arange(ranks + 1) / ranks)
+    for k in range(1, ranks + 1):  # the nearer of the two layers beside the ideal place
+        at = cuts[k]
+        if at > 0 and before[-1] * k / ranks - before[at - 1] < before[at] - before[-1] * k / ranks:
+            cuts[k] = at - 1
+    cuts[0], cuts[-1] = 0, work.size
+    for k in range(1, ranks):
+        cuts[k] = max(cuts[k], cuts[k - 1] + REACH)
+    for k in range(ranks - 1, 0, -1):
+        cuts[k] = min(cuts[k], cuts[k + 1] - REACH)
+    return cuts.astype(np.int64)
+
+
+@kernel
+def copy_images(field, at, of, shift):
+    """field[at] = field[of] + shift, element by element."""
+    for k in range(at.size):
+        field[at[k]] = field[of[k]] + shift[k]

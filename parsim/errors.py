@@ -1,0 +1,17 @@
+"""The errors that a user can cause, with the exit code each one ends in."""
+
+
+class InputError(Exception):
+    """Bad input; carries every message found at once. Exit code 2."""
+
+    def __init__(self, messages):
+        self.messages = [messages] if isinstance(messages, str) else list(messages)
+        super().__init__("\n".join(self.messages))
+
+
+class WriteError(Exception):
+    """A file or folder that cannot be written. Exit code 74."""
+
+    def __init__(self, path, reason):
+        self.path, self.reason = path, reason
+        super().__init__(f"cannot write {path}: {reason}")

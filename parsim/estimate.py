@@ -1,0 +1,134 @@
+"""What a case will cost, from its lattice alone: particles, memory, steps, hours. Nothing is built for it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from parsim import case_geometry as geometry
+from parsim.state import FIELDS
+
+RATE = 300_000  # active particle-steps per second and core
+FIELD_BYTES = 2 * sum(np.dtype(field.dtype).itemsize for field in FIELDS)  # twice: sorting writes into new arrays
+LIST_ROOM = 1.5  # length of the neighbour rows over that of the full lattice
+_PROBES = 12  # per edge of a body, to see how much of it is in the water
+RANK_BYTES = 300e6  # Python, Numba and its machine code
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Particles by kind, the active ones, bytes of these with their neighbour lists, steps of the run."""
+
+    water: int
+    wall: int
+    body: int
+    gate: int
+    active: int
+    bytes: float
+    steps: int
+
+
+def estimate(case):
+    """The cost of a case. Active are water, bodies, and walls and gate up to the highest level of the fill."""
+    layers = math.ceil(case.water.support)
+    wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
+    water, gate = round(_water(case)), _gate(case, layers)
+    body = sum(_samples(case, body, layers) for body in case.bodies)
+    active = water + body + round(gate * wet) + _walls(case, layers, wet)
+    return Estimate(
+        water=water,
+        wall=_walls(case, layers),
+        body=body,
+        gate=gate,
+        active=active,
+        bytes=active * (FIELD_BYTES + 4 * LIST_ROOM * _neighbours(case)),
+        steps=math.ceil((case.run.until - case.start) / time_step(case)),
+    )
+
+
+def time_step(case):
+    """Time step at the largest expected speed, s: CFL l0 / (c0 + u) (Mellado 2021, eq. 5.18)."""
+    return case.run.cfl * case.spacing / (case.sound_speed + case.speed)
+
+
+def lines(case, ranks):
+    """The estimate in words, for `ranks` ranks of one core each."""
+    cost = estimate(case)
+    hours = cost.active * cost.steps / (RATE * ranks) / 3600
+    each, all_of_them = (f"on each of {ranks} ranks", f"on {ranks} ranks") if ranks > 1 else ("on one rank",) * 2
+    return [
+        f"particles  about {cost.water:,} water, {cost.wall:,} wall, {cost.body:,} body, {cost.gate:,} gate; "
+        f"{cost.active:,} active",
+        f"steps      {cost.steps:,} of {time_step(case):.3g} s, from {case.start:g} to {case.run.until:g} s",
+        f"memory     {(cost.bytes / ranks + RANK_BYTES) / 1e9:.1f} GB {each}",
+        f"time       {_duration(hours)} {all_of_them}, if a core makes {RATE:,} active particle-steps per second",
+    ]
+
+
+def _duration(hours):
+    return f"{hours:.1f} hours" if hours >= 1 else f"{max(1, round(60 * hours))} minutes"
+
+
+def _count(case, lengths):
+    """Lattice points in a box with edges `lengths` (3,), m."""
+    return math.prod(max(0, round(lengths[axis] / case.spacing)) for axis in case.axes)
+
+
+def _water(case):
+    """Lattice points of all fills less the volume of the bodies and the gate in them."""
+    fills = case.water.fill
+    points = sum(_count(case, np.subtract(fill.max, fill.min)) - _count(case, _in_gate(case, fill)) for fill in fills)
+    return points - sum(_immersed(case, body) for body in case.bodies)
+
+
+def _in_gate(case, fill):
+    """Edge lengths (3,) of the part of a fill that the gate takes, m."""
+    lengths = np.subtract(fill.max, fill.min)
+    inside = min(fill.max[0], case.gate.max_x) - max(fill.min[0], case.gate.min_x) if case.gate else 0.0
+    return [max(0.0, inside), *lengths[1:]]
+
+
+def _samples(case, body, layers):
+    """Number of even sample points of a body down to `layers` spacings below its surface."""
+    every, inner = 1, 1
+    for axis in case.axes:
+        count = max(1, round(body.shape.size[axis] / case.spacing))
+        place = (np.arange(count) + 0.5) * body.shape.size[axis] / count
+        below = np.minimum(place, body.shape.size[axis] - place)
+        every, inner = every * count, inner * int(np.count_nonzero(below >= layers * case.spacing))
+    return every - inner
+
+
+def _immersed(case, body):
+    """Volume of a body in the water at the start, in lattice points."""
+    rows = [((np.arange(_PROBES) + 0.5) / _PROBES - 0.5) * length for length in body.shape.size]
+    box = geometry.of_body(body)
+    places = np.stack(np.meshgrid(*rows, indexing="ij"), axis=-1).reshape(-1, 3) @ box.axes.T + box.centre
+    wet = np.zeros(len(places), dtype=bool)
+    for fill in case.water.fill:
+        wet |= np.all((places >= fill.min) & (places <= fill.max), axis=1)
+    return wet.mean() * body.shape.volume / case.spacing ** len(case.axes)
+
+
+def _walls(case, layers, height=1.0):
+    """Wall particles outside the faces that are walls, up to a share `height` of the box."""
+    inner, outer = 1, 1
+    for axis in case.axes:
+        name, count = "xyz"[axis], round(case.box.size[axis] / case.spacing * (height if axis == 2 else 1.0))
+        sides = [getattr(case.box.faces, f"{name}_{side}") == "wall" for side in ("min", "max")]
+        inner, outer = inner * count, outer * (count + layers * sum(sides))
+    return outer - inner
+
+
+def _gate(case, layers):
+    """Particles that the closed gate shows: a support deep to each side, into floor and side walls."""
+    if case.gate is None:
+        return 0
+    across = round(case.box.size[1] / case.spacing) + 2 * layers if case.dimensions == 3 else 1
+    return 2 * layers * across * (math.ceil((case.box.max[2] - case.gate.bottom) / case.spacing) + layers)
+
+
+def _neighbours(case):
+    """Mean length of a neighbour list inside the water."""
+    reach = case.water.support + case.run.skin
+    return math.pi * reach**2 if case.dimensions == 2 else 4 / 3 * math.pi * reach**3

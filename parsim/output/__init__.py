@@ -1,0 +1,1 @@
+"""What a run writes, and the reader of it."""

@@ -1,0 +1,162 @@
+"""The public reader of an output folder: frames, series and case as numpy arrays, read when asked for."""
+
+import csv
+import difflib
+import json
+import tomllib
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from parsim.errors import InputError
+from parsim.output.frames import read_index
+
+MARKS = ("run.json", "case.toml")
+
+
+def open(folder):  # noqa: A001  (public as parsim.open, like gzip.open or h5py.File)
+    """Open the output folder of a run and return a :class:`Run`.
+
+    Raises InputError when the folder is not one, naming the nearest that is.
+    """
+    folder = Path(folder)
+    if not any((folder / mark).is_file() for mark in MARKS):
+        raise InputError(_refusal(folder))
+    return Run(folder)
+
+
+def _refusal(folder):
+    """Why a folder is no output, and which one was perhaps meant."""
+    reason = "holds neither run.json nor case.toml" if folder.is_dir() else "there is no such folder"
+    message = f"OUT = {folder}: not an output folder of parsim ({reason})"
+    around = [folder, folder.parent, folder.parent.parent]
+    found = {str(path.parent): None for place in around if place.is_dir() for path in sorted(place.glob("*/run.json"))}
+    found |= {str(place): None for place in around if (place / "run.json").is_file()}
+    nearest = difflib.get_close_matches(str(folder), found, 1, 0.0)
+    return message + (f"; did you mean {nearest[0]}?" if nearest else "")
+
+
+class Run:
+    """One output folder, opened for reading. Nothing is read before it is asked for; SI units throughout.
+
+    >>> run = parsim.open("runs/ice")
+    >>> water = run.water(-1)                       # the last frame
+    >>> water["position"].shape, water["time"]
+    >>> energy = run.series("energy")
+    >>> energy["time"], energy["total"]
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+
+    @cached_property
+    def case(self):
+        """The completed case (case.toml) as a dict; empty when the run was stopped before writing it."""
+        path = self.folder / "case.toml"
+        return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+    @cached_property
+    def info(self):
+        """What the run says of itself (run.json): status, versions, ranks, steps, phases, rates, warnings."""
+        path = self.folder / "run.json"
+        return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+    @cached_property
+    def body_names(self):
+        """Names of the bodies in the order of every array over bodies."""
+        return [body["name"] for body in self.case.get("bodies", [])]
+
+    @cached_property
+    def series_names(self):
+        """Names of the series there are, e.g. ["bodies", "counts", "energy"]."""
+        return sorted(path.stem for path in (self.folder / "series").glob("*.csv"))
+
+    def times(self, kind="water"):
+        """Times (frames,) in s of the frames of ``kind``, "water" or "bodies"."""
+        return np.array([time for _, time in read_index(self.folder / f"{kind}.vtkhdf.series")], float)
+
+    def nearest(self, time, kind="water"):
+        """Index of the frame nearest to ``time`` (s). Raises InputError when there is no frame."""
+        times = self.times(kind)
+        if not len(times):
+            raise InputError(f"OUT = {self.folder}: holds no frames of {kind}")
+        return int(np.argmin(np.abs(times - time)))
+
+    def water(self, frame):
+        """One frame of water, as a dict.
+
+        time (s), step; position (n, 3) m, id (n,), velocity (n, 3) m/s, pressure (n,) Pa, class (n,) with 0 internal,
+        1 near the surface, 2 surface, 3 detached, density_ratio (n,) of the number density to its reference.
+        """
+        with self._frame("water", frame) as file:
+            root = file["VTKHDF"]
+            return {**_common(root), "position": root["Points"][:], **_arrays(root["PointData"])}
+
+    def bodies(self, frame):
+        """One frame of bodies, as a dict.
+
+        time (s), step; points (m, 3) m and quads (k, 4) of the surfaces, body (k,) of each face; per body position
+        (nb, 3) m, quaternion (nb, 4) as w, x, y, z, velocity (nb, 3) m/s, spin (nb, 3) rad/s, and the loads (nb, 6),
+        forces in N and torques in N m.
+        """
+        with self._frame("bodies", frame) as file:
+            root = file["VTKHDF"]
+            quads = root["Polygons/Connectivity"][:].reshape(-1, 4)
+            return {**_common(root), "points": root["Points"][:], "quads": quads, **_arrays(root["CellData"])}
+
+    def series(self, name):
+        """One series as a dict of columns (rows,): int64, float64 or text. Units are in :meth:`units`.
+
+        A last row that a stopped run left unfinished is not read. Raises InputError for a name there is not.
+        """
+        titles, rows = self._table(name)[1:]
+        columns = zip(*rows, strict=True) if rows else [()] * len(titles)
+        return {title: _typed(values) for title, values in zip(titles, columns, strict=True)}
+
+    def units(self, name):
+        """The unit of each column of a series."""
+        units, titles, _ = self._table(name)
+        return dict(zip(titles, units, strict=True))
+
+    def _frame(self, kind, frame):
+        entries = read_index(self.folder / f"{kind}.vtkhdf.series")
+        if not -len(entries) <= frame < len(entries):
+            raise InputError(f"OUT = {self.folder}: has {len(entries)} frames of {kind}, there is no frame {frame}")
+        path = self.folder / entries[frame][0]
+        try:
+            return h5py.File(path, "r")
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read as a frame ({error})") from error
+
+    def _table(self, name):
+        path = self.folder / "series" / f"{name}.csv"
+        if not path.is_file():
+            nearest = difflib.get_close_matches(name, self.series_names, 1)
+            hint = f"; did you mean {nearest[0]}?" if nearest else ""
+            raise InputError(f"series {name}: not in {path.parent}, there are {self.series_names}{hint}")
+        # what follows the last line end is a row that was being written
+        lines = path.read_text(encoding="utf-8").split("\n")[:-1]
+        units = lines[0].removeprefix("# units: ").split(", ")
+        titles, *rows = csv.reader(lines[1:])
+        return units, titles, rows
+
+
+def _common(root):
+    """The field data: time and step as numbers, the rest as arrays."""
+    fields = _arrays(root["FieldData"])
+    return fields | {"time": float(fields["time"][0]), "step": int(fields["step"][0])}
+
+
+def _arrays(group):
+    return {name: values[:] for name, values in group.items()}
+
+
+def _typed(texts):
+    for kind in (np.int64, np.float64):
+        try:
+            return np.array(texts, dtype=kind) if len(texts) else np.zeros(0)
+        except ValueError:
+            continue
+    return np.array(texts, dtype=str)

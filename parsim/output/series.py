@@ -1,0 +1,59 @@
+"""Series as CSV tables: one comment line with the units, one line of names, then rows with exact numbers."""
+
+import csv
+import io
+from pathlib import Path
+
+from parsim.errors import WriteError
+from parsim.output.frames import write_text
+
+
+class Table:
+    """A CSV file that grows row by row; rows wait in memory until :meth:`flush`.
+
+    Floats are written in the shortest form that reads back to the same bits. ``columns`` begin with "step".
+    With ``resume`` (a step) an existing file is continued: its rows after that step are dropped first, so that a
+    resumed run leaves the file that an uninterrupted one would. All methods raise WriteError.
+    """
+
+    def __init__(self, path, columns, units, resume=None):
+        if len(columns) != len(units):
+            raise ValueError(f"{len(columns)} columns with {len(units)} units")
+        self.path, self.columns = Path(path), list(columns)
+        self._waiting = io.StringIO()
+        self._writer = csv.writer(self._waiting, lineterminator="\n")
+        kept = _rows_until(self.path, resume) if resume is not None else []
+        titles = ["# units: " + ", ".join(units), ",".join(columns)]
+        write_text(self.path, "\n".join([*titles, *kept]) + "\n")
+        self._file = self._guarded(lambda: open(self.path, "a", encoding="utf-8"))
+
+    def row(self, *values):
+        """Add one row, values in the order of the columns."""
+        if len(values) != len(self.columns):
+            raise ValueError(f"{self.path.name}: {len(values)} values for {len(self.columns)} columns")
+        self._writer.writerow(values)
+
+    def flush(self):
+        """Write the waiting rows."""
+        self._guarded(lambda: (self._file.write(self._waiting.getvalue()), self._file.flush()))
+        self._waiting.seek(0)
+        self._waiting.truncate()
+
+    def close(self):
+        """Write the waiting rows and close the file."""
+        self.flush()
+        self._guarded(self._file.close)
+
+    def _guarded(self, action):
+        try:
+            return action()
+        except OSError as error:
+            raise WriteError(self.path, error.strerror or error) from error
+
+
+def _rows_until(path, step):
+    """The complete rows of an earlier table up to and with ``step``."""
+    if not path.exists():
+        return []
+    lines = path.read_text(encoding="utf-8").split("\n")[2:-1]
+    return [line for line in lines if int(line.partition(",")[0]) <= step]

@@ -1,0 +1,90 @@
+"""A short animation of all frames: MP4 where imageio has an encoder, else GIF."""
+
+import io
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from parsim.report import plane
+from parsim.report.pictures import show
+from parsim.report.scene import OBLIQUE, load
+
+MOST_FRAMES, SECONDS, SLOWEST, FASTEST = 100, 6.0, 5, 20
+DOTS, COLOURS = 90, 96
+
+
+def chosen(count):
+    """Which of ``count`` frames are shown: all, or as evenly as may be at most MOST_FRAMES."""
+    return sorted(set(np.linspace(0, count - 1, min(count, MOST_FRAMES)).round().astype(int).tolist()))
+
+
+def rate(count):
+    """Pictures per second."""
+    return int(np.clip(count / SECONDS, SLOWEST, FASTEST))
+
+
+def animate(run, gallery, frames):
+    """The animation of ``frames``: (bytes, "mp4" or "gif")."""
+    # colours must not jump: 2D pictures share the scale of the run
+    draw = _spatial if run.case["dimensions"] == 3 else _plane(run, frames)
+    pictures = (_pixels(draw(run, gallery, frame)) for frame in frames)
+    try:
+        return _mp4(pictures, rate(len(frames))), "mp4"
+    except (ImportError, RuntimeError, OSError):
+        pictures = (_pixels(draw(run, gallery, frame)) for frame in frames)
+        return _gif(pictures, rate(len(frames))), "gif"
+
+
+def _spatial(run, gallery, frame):
+    scene = load(run, frame)
+    extent = OBLIQUE.extent(scene)
+    height = 8 * (extent[3] - extent[2]) / (extent[1] - extent[0])
+    drawn = Figure(figsize=(8, height), dpi=DOTS)
+    axes = drawn.add_axes((0, 0, 1, 1))
+    show(axes, gallery, scene, frame, OBLIQUE)
+    axes.text(0.03, 0.94, f"t = {scene.time:.2f} s", transform=axes.transAxes, fontsize=13)
+    return drawn
+
+
+def _plane(run, frames):
+    fastest = max(plane.scale(run.water(frame), "speed") for frame in frames)
+
+    def draw(run, gallery, frame):
+        drawn = plane.snapshot(run, frame, ("speed",), fastest)
+        drawn.set_dpi(DOTS)
+        return drawn
+
+    return draw
+
+
+def _pixels(figure):
+    """The figure as bytes (rows, columns, 3), both even, as the encoder wants them."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    picture = np.asarray(canvas.buffer_rgba())[..., :3]
+    return np.ascontiguousarray(picture[: picture.shape[0] // 2 * 2, : picture.shape[1] // 2 * 2])
+
+
+def _mp4(pictures, fps):
+    import imageio.v2 as imageio
+    import imageio_ffmpeg
+
+    imageio_ffmpeg.get_ffmpeg_exe()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "animation.mp4"
+        with imageio.get_writer(path, fps=fps, codec="libx264", quality=7, macro_block_size=2) as writer:
+            for picture in pictures:
+                writer.append_data(picture)
+        return path.read_bytes()
+
+
+def _gif(pictures, fps):
+    from PIL import Image
+
+    images = [Image.fromarray(picture).quantize(COLOURS, dither=Image.Dither.NONE) for picture in pictures]
+    target = io.BytesIO()
+    images[0].save(target, "GIF", save_all=True, append_images=images[1:], duration=round(1000 / fps), loop=0)
+    return target.getvalue()

@@ -1,0 +1,93 @@
+"""From a case to particles, bodies and models: the only place where models are built."""
+
+import math
+
+import numpy as np
+
+from parsim.boundary.gate import Gate, GateSamples
+from parsim.boundary.wall import Walls
+from parsim.cells import REACH, Grid
+from parsim.coupling import BodySamples
+from parsim.domain import Domain
+from parsim.errors import InputError
+from parsim.fluid.wcmps import WCMPS
+from parsim.neighbours import Neighbours
+from parsim.shapes import free_of_bodies, lattice
+from parsim.solid.bodies import from_case
+from parsim.solid.contacts import Contacts
+from parsim.state import FLUID, Particles, make_id
+
+_ROOM = 1.3  # length of the neighbour rows over that of the full lattice
+
+
+def check_ranks(case, ranks):
+    """Raise InputError when the box has too few layers of cells for this many ranks."""
+    layers = grid_of(case, _layers(case), _reach(case)).layers
+    if layers < REACH * ranks:
+        raise InputError(f"{ranks} ranks: the box has {layers} layers of cells along x and a rank needs at least "
+                         f"{REACH}; use at most {layers // REACH} ranks")
+
+
+def _layers(case):
+    """Layers of boundary particles that fill the support."""
+    return math.ceil(case.water.support)
+
+
+def _reach(case):
+    """Radius of the neighbour lists, m."""
+    return (case.water.support + case.run.skin) * case.spacing
+
+
+class Models:
+    """The models of one case, as attributes: scheme, bodies, contacts, gate, samples, domain, near."""
+
+    def __init__(self, case, comm):
+        layers, self.reach = _layers(case), _reach(case)
+        self.scheme = WCMPS(case)
+        self.bodies = from_case(case)
+        self.contacts = Contacts(self.bodies, case)
+        self.samples = BodySamples(case, self.bodies, layers)
+        self.walls = Walls(case, layers)
+        self.gate = Gate(case) if case.gate is not None else None
+        self.gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
+        sources = [s for s in (self.samples, self.gate_samples, self.walls) if s is not None]
+        self.domain = Domain(grid_of(case, layers, self.reach), comm, sources)
+        share = (1.0 + case.run.skin / case.water.support) ** case.dimensions
+        self.near = Neighbours(int(self.scheme.lattice.count * share * _ROOM) + 8)
+
+
+def grid_of(case, layers, reach):
+    """The global grid: the box, and beyond its walls and open sides the depth of the wall particles."""
+    beyond = layers * case.spacing
+    periodic = [getattr(case.box.faces, f"{axis}_min") == "periodic" for axis in "xyz"]
+    low = [c if p else c - beyond for c, p in zip(case.box.min, periodic, strict=True)]
+    high = [c if p else c + beyond for c, p in zip(case.box.max, periodic, strict=True)]
+    if case.dimensions == 2:  # one cell across
+        periodic[1], low[1], high[1] = False, 0.5 - reach / (2 * REACH), 0.5 + reach / (2 * REACH)
+    return Grid(low, high, reach, periodic)
+
+
+def water(case, bodies, scheme):
+    """The water at the start: all fluid particles of the case, with the velocity of their fill, in pressure balance."""
+    parts, number = [], 0
+    for fill in case.water.fill:
+        points = lattice(fill.min, fill.max, case.spacing, case.axes)
+        size = np.subtract(fill.max, fill.min)
+        spacing = [size[a] / max(round(size[a] / case.spacing), 1) for a in range(3)]
+        idents = number + np.arange(len(points))
+        number += len(points)
+        stays = free_of_bodies(points, spacing, case, bodies)
+        if case.gate is not None:
+            stays &= (points[:, 0] < case.gate.min_x) | (points[:, 0] > case.gate.max_x)
+        parts.append(_particles(case, scheme, fill, points[stays], idents[stays]))
+    return Particles.join(parts) if parts else Particles()
+
+
+def _particles(case, scheme, fill, points, idents):
+    depth = (fill.max[2] - points[:, 2]) if case.water.pressure == "hydrostatic" else np.zeros(len(points))
+    pressure = case.water.density * -case.gravity[2] * depth
+    u, v, w = fill.velocity
+    return Particles(
+        len(points), id=make_id(FLUID, idents), kind=FLUID, x=points[:, 0], y=points[:, 1], z=points[:, 2],
+        u=u, v=v, w=w, n=[scheme.number_at(p) for p in pressure],
+    )

@@ -1,0 +1,149 @@
+"""Rigid bodies: what they are, where they are and how they move. Every rank holds all of them and moves them alike."""
+
+import math
+
+import numpy as np
+
+from parsim.jit import kernel
+from parsim.solid.rotation import free_turn, from_angles, matrices, matrix, scaled
+
+_SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners of a box
+_QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
+
+
+class Bodies:
+    """All bodies as arrays of nb rows; a 2D run is per metre of width and turns about y only (`planar`).
+
+    mass (nb,), kg; inertia (nb, 3), principal moments in the body frame, kg m2; half (nb, 3), half edges of the box,
+    m; volume (nb,), m3; material (nb,), number of the material; fixed (nb,), never moves; released (nb,), s, held in
+    place before and then let go from rest. position (nb, 3), m; quaternion (nb, 4), body to global; velocity (nb, 3),
+    m/s; spin (nb, 3), global axes, rad/s.
+    Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
+    force, N, and torque about the centre, N m.
+    """
+
+    def __init__(self, half, mass, position, quaternion=None, velocity=0.0, spin=0.0, *, names=None, material=0,
+                 fixed=False, released=-math.inf, planar=False):
+        self.half = np.array(half, float).reshape(-1, 3)
+        count, self.planar = len(self.half), bool(planar)
+        self.names = list(names) if names is not None else [f"body{b}" for b in range(count)]
+        self.mass, self.released = _column(mass, count), _column(released, count)
+        self.fixed, self.material = _column(fixed, count, bool), _column(material, count, np.int64)
+        self.volume, self.inertia = volume_of_box(self.half), inertia_of_box(self.half, self.mass)
+        self.position, self.velocity, self.spin = (_rows(v, count, 3) for v in (position, velocity, spin))
+        still = self.fixed | (self.released > -math.inf)
+        self.velocity[still], self.spin[still] = 0.0, 0.0
+        self.quaternion = _rows((1.0, 0.0, 0.0, 0.0) if quaternion is None else quaternion, count, 4)
+        self.acceleration, self.angular_acceleration = np.zeros((count, 3)), np.zeros((count, 3))
+        self.water_load, self.contact_load, self.gravity_load = (np.zeros((count, 6)) for _ in range(3))
+
+    def __len__(self):
+        return len(self.mass)
+
+    def held(self, time):
+        """Which bodies do not move in a step that begins at `time`, s: (nb,) bool."""
+        return self.fixed | (time < self.released)
+
+    def drifted(self, dt):
+        """Pose after `dt`, s, at the present velocity and angular momentum: (position, quaternion), new arrays."""
+        position, quaternion = self.position.copy(), self.quaternion.copy()
+        drift(self.mass, self.inertia, self.velocity, self.spin, dt, position, quaternion)
+        return position, quaternion
+
+    def surface(self):
+        """The closed surface: points (8 nb, 3), m; quads (6 nb, 4), counter-clockwise from outside; body (6 nb,)."""
+        turn, count = matrices(self.quaternion), len(self)
+        points = np.array([self.position[b] + (_SIGNS * self.half[b] * turn[b][:, None]).sum(-1).T
+                           for b in range(count)]).reshape(-1, 3)
+        quads = (_QUADS + 8 * np.arange(count)[:, None, None]).reshape(-1, 4)
+        return points, quads, np.repeat(np.arange(count), 6)
+
+    def surface_speed(self):
+        """Bound of the speed of any point of any body, m/s: |v| + |w| R."""
+        return float(largest_speed(self.half, self.velocity, self.spin))
+
+    def kinetic_energy(self):
+        """Kinetic energy of all bodies, J (2D: per metre of width)."""
+        return float(kinetic(self.mass, self.inertia, self.quaternion, self.velocity, self.spin))
+
+    def potential_energy(self, gravity):
+        """Potential energy of all bodies in `gravity` (3,), m/s2; zero at the origin; J."""
+        return -math.fsum(m * g * x for m, at in zip(self.mass, self.position, strict=True)
+                          for g, x in zip(gravity, at, strict=True))
+
+
+def from_case(case):
+    """The bodies of a case, at its start."""
+    bodies, numbers = case.bodies, {name: number for number, name in enumerate(case.materials)}
+    return Bodies(
+        half=[[0.5 * edge for edge in b.shape.size] for b in bodies],
+        mass=[case.mass_of(b) for b in bodies],
+        position=[b.position for b in bodies],
+        quaternion=[from_angles(b.angles) for b in bodies],
+        velocity=[b.velocity for b in bodies],
+        spin=[b.spin for b in bodies],
+        names=[b.name for b in bodies],
+        material=[numbers[b.material] for b in bodies],
+        fixed=[b.fixed for b in bodies],
+        released=[-math.inf if b.released is None else b.released for b in bodies],
+        planar=case.dimensions == 2,
+    )
+
+
+def volume_of_box(half):
+    """Volumes (nb,), m3, of boxes of half edges `half` (nb, 3)."""
+    return 8.0 * half[:, 0] * half[:, 1] * half[:, 2]
+
+
+def inertia_of_box(half, mass):
+    """Principal moments (nb, 3), kg m2, of boxes of half edges (nb, 3) and mass (nb,)."""
+    square = half * half
+    return np.stack([mass / 3.0 * (square[:, (a + 1) % 3] + square[:, (a + 2) % 3]) for a in range(3)], axis=-1)
+
+
+def _column(value, count, kind=float):
+    return np.array(np.broadcast_to(np.asarray(value, kind), count), order="C")
+
+
+def _rows(value, count, width):
+    value = np.asarray(value, float)
+    value = value if value.size else value.reshape(0, width)
+    return np.array(np.broadcast_to(value, (count, width)), order="C")  # kernels are compiled for this layout
+
+
+@kernel
+def drift(mass, inertia, velocity, spin, dt, position, quaternion):
+    """Free motion of all bodies over `dt`: position and quaternion are changed in place."""
+    for b in range(mass.size):
+        q = (quaternion[b, 0], quaternion[b, 1], quaternion[b, 2], quaternion[b, 3])
+        own = (inertia[b, 0], inertia[b, 1], inertia[b, 2])
+        momentum = scaled(matrix(q), own, spin[b, 0], spin[b, 1], spin[b, 2])
+        q = free_turn(q, momentum, (1.0 / own[0], 1.0 / own[1], 1.0 / own[2]), dt)
+        quaternion[b, 0], quaternion[b, 1], quaternion[b, 2], quaternion[b, 3] = q
+        for a in range(3):
+            position[b, a] += dt * velocity[b, a]
+
+
+@kernel
+def largest_speed(half, velocity, spin):
+    """Largest |v| + |w| R over all bodies."""
+    largest = 0.0
+    for b in range(len(half)):
+        v, w, h = velocity[b], spin[b], half[b]
+        radius = math.sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2])
+        speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        largest = max(largest, speed + radius * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
+    return largest
+
+
+@kernel
+def kinetic(mass, inertia, quaternion, velocity, spin):
+    """Kinetic energy of all bodies, in the order of the bodies."""
+    energy = 0.0
+    for b in range(mass.size):
+        m = matrix((quaternion[b, 0], quaternion[b, 1], quaternion[b, 2], quaternion[b, 3]))
+        w, v = spin[b], velocity[b]
+        x, y, z = scaled(m, (inertia[b, 0], inertia[b, 1], inertia[b, 2]), w[0], w[1], w[2])
+        energy += 0.5 * mass[b] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        energy += 0.5 * (x * w[0] + y * w[1] + z * w[2])
+    return energy

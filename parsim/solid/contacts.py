@@ -1,0 +1,182 @@
+"""Contacts of rigid bodies with each other, the walls and the gate, and the motion of the bodies under all loads."""
+
+import math
+
+import numpy as np
+
+from parsim.boundary.gate import Gate
+from parsim.solid import table
+from parsim.solid.elements import elements_of
+from parsim.solid.hertz import pair_tables
+from parsim.solid.motion import begin, finish
+from parsim.solid.search import (
+    ELEMENT,
+    SLOT_KEY,
+    STRETCH,
+    TOUCHING,
+    fill_slots,
+    near_pairs,
+    recall,
+    room_for_pairs,
+    room_for_slots,
+    sort_pairs,
+)
+from parsim.solid.substeps import advance, elastic
+
+_SHARE = 0.1  # of the smallest edge that a body may move in one step
+_FAR = 1e3  # half edges of the gate over the size of the box: it has neither ends nor a top
+
+
+class Contacts:
+    """Moves the bodies of a case, deterministically: every rank does the same and gets the same bits.
+
+    Attributes: dissipated, J, energy lost in contacts so far; gate_work, J, work of the gate on bodies so far; count,
+    elements that touch; steps, sub-steps of the last step.
+    """
+
+    def __init__(self, bodies, case, gate=None):
+        self.bodies, self._gravity = bodies, np.array(case.gravity, float)
+        self._steps_per_contact = case.contacts.steps_per_contact
+        self._gate = gate or (Gate(case) if case.gate is not None else None)
+        self._walls, self._period = _walls(case), _period(case)
+        self._law = pair_tables(list(case.materials.values()), _depth(case, bodies))
+        self._first, self._elements, cell = elements_of(bodies)
+        self._table = _table(bodies, cell, case, self._gate)
+        self._pairs, self._shift = room_for_pairs(64)
+        self._marks, self._slots = room_for_slots(4096)
+        self._smallest = 2.0 * float(np.min(bodies.half)) if len(bodies) else math.inf
+        self.dissipated = self.gate_work = self._time = 0.0
+        self.count, self.steps, self._state = 0, 0, np.zeros(2)
+        self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 3))
+
+    def limit(self):
+        """Largest step of the water, s, over which the normals of contacts may be kept; inf when nothing moves."""
+        speed = self.bodies.surface_speed()
+        return _SHARE * self._smallest / speed if speed > 0.0 else math.inf
+
+    def step(self, bodies, water_load, time, dt):
+        """Advance `bodies` from `time` over `dt`, s, under `water_load` (nb, 6), N and N m, gravity and contacts.
+
+        Sets pose, velocity and spin, the mean loads of the step and the accelerations; nothing touching: one exact
+        step.
+        """
+        bodies.water_load[:] = water_load
+        number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
+        self.count, self.steps, lost, work = advance(
+            self._table, *self._listed(), number, dt, reach, self._steps_per_contact, self._state
+        )
+        self.dissipated, self.gate_work, self._time = self.dissipated + lost, self.gate_work + work, time + dt
+        self._remember(slots)
+        finish(self._table, dt, bodies.position, bodies.quaternion, bodies.velocity, bodies.spin, bodies.acceleration,
+               bodies.angular_acceleration, bodies.contact_load)
+
+    def elastic_energy(self):
+        """Energy, J, stored in the contacts at the present pose."""
+        if not len(self.bodies):
+            return 0.0
+        number, _, _ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
+        return float(elastic(self._table, *self._listed(), number))
+
+    def kept(self):
+        """What a restart needs: name -> array; the memory of friction by pair and element, and the totals."""
+        totals = np.array([self.dissipated, self.gate_work, self._time, *self._state])
+        return {"key": self._key.copy(), "element": self._element.copy(), "stretch": self._stretch.copy(),
+                "totals": totals}
+
+    def restore(self, kept):
+        """Go on from what `kept` returned."""
+        self._key, self._element = (np.array(kept[name], np.int64) for name in ("key", "element"))
+        self._stretch = np.array(kept["stretch"], float).reshape(-1, 3)
+        self.dissipated, self.gate_work, self._time = (float(v) for v in kept["totals"][:3])
+        self._state = np.array(kept["totals"][3:], float)
+        self.count = len(self._key)
+
+    def _prepare(self, bodies, held, time, dt):
+        """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m)."""
+        m, count = self._table, len(bodies)
+        if self._gate is not None:
+            m[count, table.POSITION + 2] = self._gate.bottom(time) + m[count, table.HALF + 2]
+            m[count, table.VELOCITY + 2] = self._gate.velocity(time)
+        begin(m, bodies.position, bodies.quaternion, bodies.velocity, bodies.spin, bodies.mass, held,
+              bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
+        number, reach = self._list_pairs(bodies.planar, dt)
+        return number, self._list_slots(number, reach), reach
+
+    def _listed(self):
+        return self._elements, self._walls, self._law, self._pairs, self._shift, self._marks, self._slots
+
+    def _list_pairs(self, planar, dt):
+        place = self._table[:-1, table.POSITION].copy()
+        if self._period[0] < math.inf:
+            place = place - self._period[0] * np.floor(place / self._period[0])
+        order = np.argsort(place, kind="stable")
+        find = self._table, self._walls, self._period, planar, self._gate is not None, dt, place, order
+        number, reach = near_pairs(*find, self._pairs, self._shift)
+        if number > len(self._pairs):
+            self._pairs, self._shift = room_for_pairs(2 * number)
+            number, reach = near_pairs(*find, self._pairs, self._shift)
+        if number > 1:
+            sort_pairs(self._pairs, self._shift, number)
+        return number, reach
+
+    def _list_slots(self, number, reach):
+        if number == 0:
+            return 0
+        find = self._table, self._first, self._elements, self._walls, self._pairs, self._shift, number, reach
+        count = fill_slots(*find, self._marks, self._slots)
+        if count > len(self._marks):
+            self._marks, self._slots = room_for_slots(2 * count)
+            count = fill_slots(*find, self._marks, self._slots)
+        recall(self._marks, self._slots, count, self._key, self._element, self._stretch)
+        return count
+
+    def _remember(self, count):
+        if not count and not len(self._key):
+            return
+        at = np.flatnonzero(self._marks[:count, TOUCHING])
+        self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]
+        self._stretch = self._slots[at, STRETCH:]
+
+
+def _depth(case, bodies):
+    """Depth of the elastic layer, m: `foundation_depth`, else half the thinnest body."""
+    used = [0, 2] if bodies.planar else [0, 1, 2]
+    return case.contacts.foundation_depth or (float(bodies.half[:, used].min()) if len(bodies) else 1.0)
+
+
+def _walls(case):
+    """Planes of the faces of the box that are walls, (n, 4): normal inwards, level."""
+    axes = (0, 2) if case.dimensions == 2 else (0, 1, 2)
+    planes = [(axis, sign, end[axis]) for axis in axes
+              for sign, side, end in ((1.0, "min", case.box.min), (-1.0, "max", case.box.max))
+              if getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall"]
+    walls = np.zeros((len(planes), 4))
+    for row, (axis, sign, at) in enumerate(planes):
+        walls[row, axis], walls[row, 3] = sign, sign * at
+    return walls
+
+
+def _period(case):
+    """Lengths (3,), m, after which the box repeats; inf where it does not."""
+    faces, low, high = case.box.faces, case.box.min, case.box.max
+    around = [getattr(faces, f"{axis}_min") == "periodic" and (axis != "y" or case.dimensions == 3) for axis in "xyz"]
+    return np.array([high[a] - low[a] if around[a] else math.inf for a in range(3)])
+
+
+def _table(bodies, cell, case, gate):
+    """The kernels' copy of the bodies, with the gate as the last row; walls and gate are of one material."""
+    count = len(bodies)
+    out = np.zeros((count + 1, table.WIDTH))
+    for at, values in ((table.HALF, bodies.half), (table.INERTIA, bodies.inertia), (table.CELL, cell)):
+        out[:count, at : at + 3] = values
+    out[:count, table.MATERIAL] = bodies.material
+    out[count, table.MATERIAL] = list(case.materials).index(case.wall_material) if case.materials else 0
+    far = _FAR * max(high - low for low, high in zip(case.box.min, case.box.max, strict=True))
+    out[count, table.HALF : table.HALF + 3] = far
+    out[count, table.CELL : table.CELL + 3] = np.max(cell, initial=0.0)
+    out[count, table.QUATERNION] = 1.0
+    out[count, [table.TURN, table.TURN + 4, table.TURN + 8]] = 1.0
+    if gate is not None:
+        out[count, table.HALF] = 0.5 * (gate.max_x - gate.min_x)
+        out[count, table.POSITION] = 0.5 * (gate.max_x + gate.min_x)
+    return out

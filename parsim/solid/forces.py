@@ -1,0 +1,156 @@
+"""Forces of all pairs that may touch: the law for each element, summed per body."""
+
+import math
+
+from parsim.jit import kernel
+from parsim.solid.hertz import TANGENTIAL, friction_force, normal_force
+from parsim.solid.motion import clear_loads, speed_of
+from parsim.solid.rotation import to_body
+from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, A, B
+from parsim.solid.separation import between
+from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
+from parsim.solid.touch import centre_of, measure, normal_of
+
+
+@kernel
+def press(m, elements, walls, law, pairs, shift, marks, slots, number, lapse):
+    """Contact loads of the first `number` pairs into the table; (elements touching, energy in friction, J).
+
+    `law` (3, n, n): stiffness per area, Pa/m, damping ratio and friction over materials. `lapse`: time since the last
+    call, s, by which friction springs have stretched. 50 ns an element that touches, 1 us a pair that overlaps.
+    """
+    clear_loads(m)
+    touching, stored = 0, 0.0
+    for c in range(number):
+        apart, x, y, z = normal_of(m, walls, pairs, shift, c)
+        area = measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) if apart < 0.0 else 0.0
+        if area == 0.0:
+            for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
+                marks[slot, TOUCHING] = 0
+            continue
+        more, energy = _push(m, law, pairs, three(shift, c, 0), marks, slots, c, (x, y, z), area, lapse)
+        touching, stored = touching + more, stored + energy
+    return touching, stored
+
+
+@kernel
+def coefficients(m, law, a, b):
+    """(stiffness per area, damping ratio, friction) of body a and b; walls are of the gate's material."""
+    one, two = int(m[a, MATERIAL]), int(m[b if b >= 0 else len(m) - 1, MATERIAL])
+    return law[0, one, two], law[1, one, two], law[2, one, two]
+
+
+@kernel
+def compliance(m, a, b, p, by, n):
+    """1 / effective mass of a pair for an impulse along `n` at the point `p`, 1/kg."""
+    one = _compliance(m, a, p, (0.0, 0.0, 0.0), n)
+    return one + _compliance(m, b, p, by, n) if b >= 0 else one
+
+
+@kernel
+def _compliance(m, b, p, by, n):
+    centre, own = three(m, b, POSITION), three(m, b, INVERSE)
+    x, y, z = p[0] - centre[0] - by[0], p[1] - centre[1] - by[1], p[2] - centre[2] - by[2]
+    x, y, z = to_body(turn_at(m, b), y * n[2] - z * n[1], z * n[0] - x * n[2], x * n[1] - y * n[0])
+    return m[b, LIGHT] + (own[0] * x * x + own[1] * y * y + own[2] * z * z)
+
+
+@kernel
+def _push(m, law, pairs, by, marks, slots, c, n, total, lapse):
+    """Add the loads of one pair whose elements touch with the area `total`; (elements, energy in friction springs).
+
+    The dashpots share 2 b sqrt(m* k A) by area, m* taken at the centre of the touching area: restitution then depends
+    neither on the number of elements nor on where the body is hit.
+    """
+    a, b, first, last = pairs[c, A], pairs[c, B], pairs[c, FIRST], pairs[c, LAST]
+    stiffness, damping, mu = coefficients(m, law, a, b)
+    effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
+    dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total)
+    motion = relative_motion(m, a, b, by)
+    touching, stored, force, loss = _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu)
+    _add_load(m, LOAD, a, b, by, force)
+    _add_load(m, LOSS, a, b, by, loss)
+    return touching, stored
+
+
+@kernel
+def _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu):
+    """The law for each element of one pair: (touching, energy in friction, force on body a, its dissipating part).
+
+    Both are six numbers: force and torque about the centre of body a.
+    """
+    count, stored, tangential = 0, 0.0, math.sqrt(TANGENTIAL) * dashpot
+    fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
+    ox, oy, oz = motion[0]
+    for slot in range(first, last + 1):
+        area, depth = slots[slot, AREA], slots[slot, DEPTH]
+        if depth <= 0.0:
+            marks[slot, TOUCHING] = 0
+            continue
+        x, y, z = slots[slot, POINT] - ox, slots[slot, POINT + 1] - oy, slots[slot, POINT + 2] - oz
+        v = velocity_at(motion, x, y, z)
+        normal, elastic = normal_force(stiffness, dashpot, area, depth, v[0] * n[0] + v[1] * n[1] + v[2] * n[2])
+        s, age = (0.0, 0.0, 0.0), 0.0
+        if marks[slot, TOUCHING]:
+            s, age = three(slots, slot, STRETCH), lapse
+        slip, s, energy = friction_force(
+            s, n, v, age, mu * normal, TANGENTIAL * stiffness * area, tangential * area
+        )
+        slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
+        marks[slot, TOUCHING] = 1
+        count, stored = count + 1, stored + energy
+        p, q, r = normal * n[0] + slip[0], normal * n[1] + slip[1], normal * n[2] + slip[2]
+        fx, fy, fz = fx + p, fy + q, fz + r
+        tx, ty, tz = tx + (y * r - z * q), ty + (z * p - x * r), tz + (x * q - y * p)
+        p, q, r = p - elastic * n[0], q - elastic * n[1], r - elastic * n[2]
+        gx, gy, gz = gx + p, gy + q, gz + r
+        ux, uy, uz = ux + (y * r - z * q), uy + (z * p - x * r), uz + (x * q - y * p)
+    return count, stored, (fx, fy, fz, tx, ty, tz), (gx, gy, gz, ux, uy, uz)
+
+
+@kernel
+def relative_motion(m, a, b, by):
+    """Motion of body a against b (a body, the gate or a wall): (centre of a, velocity there, spin), each of three."""
+    v, w = three(m, a, VELOCITY), three(m, a, SPIN)
+    if b < 0:
+        return three(m, a, POSITION), v, w
+    (p, q, r), u, (x, y, z) = three(m, b, SPIN), three(m, b, VELOCITY), between(m, a, b, by)
+    v = (v[0] - u[0] - (q * z - r * y), v[1] - u[1] - (r * x - p * z), v[2] - u[2] - (p * y - q * x))
+    return three(m, a, POSITION), v, (w[0] - p, w[1] - q, w[2] - r)
+
+
+@kernel
+def velocity_at(motion, x, y, z):
+    """Relative velocity at (x, y, z) from the centre of a `relative_motion`."""
+    _, v, w = motion
+    return v[0] + w[1] * z - w[2] * y, v[1] + w[2] * x - w[0] * z, v[2] + w[0] * y - w[1] * x
+
+
+@kernel
+def _add_load(m, at, a, b, by, f):
+    """Add force and torque `f` (six, about the centre of a) to columns `at` of body a, its reaction to b's."""
+    for k in range(6):
+        m[a, at + k] += f[k]
+    if b >= 0:
+        x, y, z = between(m, a, b, by)
+        for k in range(3):
+            m[b, at + k] -= f[k]
+        m[b, at + 3] -= f[3] + (y * f[2] - z * f[1])
+        m[b, at + 4] -= f[4] + (z * f[0] - x * f[2])
+        m[b, at + 5] -= f[5] + (x * f[1] - y * f[0])
+
+
+@kernel
+def free_time(m, walls, pairs, shift, number, dt):
+    """A time, s, at most `dt`, in which no pair that is apart can touch; 0 if one overlaps."""
+    least = dt
+    for c in range(number):
+        apart = normal_of(m, walls, pairs, shift, c)[0]
+        speed = speed_of(m, pairs[c, A], dt)
+        if pairs[c, B] >= 0:
+            speed += speed_of(m, pairs[c, B], dt)
+        if apart <= 0.0:
+            return 0.0
+        if speed * least > apart:
+            least = apart / speed
+    return least

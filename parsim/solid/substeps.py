@@ -1,0 +1,144 @@
+"""One step of the water for all bodies, cut into sub-steps where contacts need them."""
+
+import math
+
+import numpy as np
+
+from parsim.jit import kernel
+from parsim.solid.forces import coefficients, compliance, free_time, press, relative_motion, velocity_at
+from parsim.solid.hertz import TANGENTIAL
+from parsim.solid.motion import alone, drift_involved, kick_involved
+from parsim.solid.rotation import scaled
+from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, A, B
+from parsim.solid.separation import overlap_share, ramp_of
+from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at
+from parsim.solid.touch import centre_of, measure, normal_of, show
+
+_AT_REST = 5  # steps in half a period of what lies or is pressed together
+_CALM = 0.25  # how far, over their depth, such contacts may still move
+
+
+@kernel
+def advance(m, elements, walls, law, pairs, shift, marks, slots, number, dt, reach, steps_per_contact, state):
+    """Move all bodies over `dt`, s; (touching elements, steps, energy dissipated, work of the gate).
+
+    Sub-steps of equal length while something touches; until the first touch, as long as nothing can touch. `state`
+    (2,): energy in friction springs and the time by which their stretch is behind the pose; from step to step.
+
+    Measured for steps of 0.2 ms on a busy core: 9 blocks apart 25 us; jostling between walls and gate 0.9 ms; a stack
+    of three at rest 1.3 ms (76 sub-steps); 9 blocks pressed together, 20 pairs, 2.7 ms (45 sub-steps).
+    """
+    alone(m, dt)
+    if number == 0:
+        lost, state[0], state[1] = state[0], 0.0, 0.0
+        return 0, 1, lost, 0.0
+    lost, steps, work = state[0], 0, 0.0
+    touching, state[0] = press(m, elements, walls, law, pairs, shift, marks, slots, number, 0.0)
+    longest = _longest(m, elements, walls, law, pairs, shift, marks, slots, number, steps_per_contact, reach)
+    rest, pending = dt, 0.0
+    while rest > 0.0:
+        count = max(math.ceil(rest / longest), 1)
+        span = rest / count
+        if touching == 0 and count > 1:
+            span = min(max(span, free_time(m, walls, pairs, shift, number, dt) - pending), rest)
+        drift_involved(m, pending + 0.5 * span)
+        lapse = state[1] + 0.5 * span
+        touching, state[0] = press(m, elements, walls, law, pairs, shift, marks, slots, number, lapse)
+        heat, by_gate = kick_involved(m, span)
+        lost, work, steps = lost + heat, work + by_gate, steps + 1
+        rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
+        state[1] = pending
+    drift_involved(m, pending)
+    return touching, steps, lost - state[0], work
+
+
+@kernel
+def _longest(m, elements, walls, law, pairs, shift, marks, slots, number, steps_per_contact, reach):
+    """Longest sub-step, s: the half period pi / sqrt(k A / m*) of a body on what it may touch, over the steps for it.
+
+    All elements listed count as if they touched; a body's pairs are summed by rows of the matrix of k/m* n n, whose
+    largest sum bounds its eigenvalues (Gershgorin) and with whole pairs those of chains. Pairs at rest on each other
+    need only be stable: they take _AT_REST steps.
+    """
+    rate, largest = np.zeros((len(m), 3)), 0.0
+    for c in range(number):
+        a, b = pairs[c, A], pairs[c, B]
+        apart, x, y, z = normal_of(m, walls, pairs, shift, c)
+        area = measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) if apart < 0.0 else 0.0
+        calm = _calm(m, law, pairs, shift, slots, c, (x, y, z), area) if area > 0.0 else False
+        rigid = _rate(m, elements, law, pairs, shift, marks, slots, c, (x, y, z))
+        if b >= 0 and apart < 0.0:
+            ramp = 4.0 * ramp_of(m, a, b)
+            rigid *= min(overlap_share(m, a, b, three(shift, c, 0), x, y, z, ramp) + reach / ramp, 1.0)
+        steps = min(steps_per_contact, _AT_REST) if calm else steps_per_contact
+        rigid *= steps * steps
+        u, v, w = abs(x), abs(y), abs(z)
+        for body in (a, b):
+            if body >= 0:
+                rate[body, 0] += rigid * u * (u + v + w)
+                rate[body, 1] += rigid * v * (u + v + w)
+                rate[body, 2] += rigid * w * (u + v + w)
+                largest = max(largest, rate[body, 0], rate[body, 1], rate[body, 2])
+    return math.pi / math.sqrt(largest) if largest > 0.0 else math.inf
+
+
+@kernel
+def _rate(m, elements, law, pairs, shift, marks, slots, c, n):
+    """Square of the largest angular frequency, 1/s2, of pair `c` if all its elements touch."""
+    a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
+    total, trace = show(m, elements, pairs, shift, marks, slots, c, n), 0.0
+    if total == 0.0:
+        return 0.0
+    for slot in range(first, last + 1):
+        if slots[slot, AREA] > 0.0:
+            trace += slots[slot, AREA] * compliance(m, a, b, three(slots, slot, POINT), by, n)
+    bounce = total * compliance(m, a, b, centre_of(slots, first, last), by, n)
+    return coefficients(m, law, a, b)[0] * max(bounce, trace / 3.0)  # three ways to move on a face
+
+
+@kernel
+def _calm(m, law, pairs, shift, slots, c, n, area):
+    """Whether a touching pair lies at rest: what speed and unbalanced force can move it is small against its depth."""
+    a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
+    motion, volume, fastest = relative_motion(m, a, b, by), 0.0, 0.0
+    x, y, z = motion[0]
+    for slot in range(first, last + 1):
+        if slots[slot, DEPTH] > 0.0:
+            p = three(slots, slot, POINT)
+            v = velocity_at(motion, p[0] - x, p[1] - y, p[2] - z)
+            fastest = max(fastest, abs(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
+            volume += slots[slot, AREA] * slots[slot, DEPTH]
+    centre = centre_of(slots, first, last)
+    square = coefficients(m, law, a, b)[0] * area * compliance(m, a, b, centre, by, n)
+    unbalanced = _acceleration(m, a, centre, (0.0, 0.0, 0.0), n)
+    if b >= 0:
+        unbalanced -= _acceleration(m, b, centre, by, n)
+    return fastest / math.sqrt(square) + abs(unbalanced) / square < _CALM * volume / area
+
+
+@kernel
+def _acceleration(m, b, p, by, n):
+    """Acceleration along `n` of the point `p` of body `b` under its present loads, m/s2."""
+    centre = three(m, b, POSITION)
+    x, y, z = p[0] - centre[0] - by[0], p[1] - centre[1] - by[1], p[2] - centre[2] - by[2]
+    f, g, t, u = three(m, b, GIVEN), three(m, b, LOAD), three(m, b, GIVEN + 3), three(m, b, LOAD + 3)
+    p, q, r = scaled(turn_at(m, b), three(m, b, INVERSE), t[0] + u[0], t[1] + u[1], t[2] + u[2])
+    ax, ay, az = (f[0] + g[0]) * m[b, LIGHT], (f[1] + g[1]) * m[b, LIGHT], (f[2] + g[2]) * m[b, LIGHT]
+    return n[0] * (ax + q * z - r * y) + n[1] * (ay + r * x - p * z) + n[2] * (az + p * y - q * x)
+
+
+@kernel
+def elastic(m, elements, walls, law, pairs, shift, marks, slots, number):
+    """Energy, J, in the foundations and friction springs of all elements that touch at the present pose."""
+    energy = 0.0
+    for c in range(number):
+        apart, x, y, z = normal_of(m, walls, pairs, shift, c)
+        if apart >= 0.0 or measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) == 0.0:
+            continue
+        stiffness = coefficients(m, law, pairs[c, A], pairs[c, B])[0]
+        for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
+            if slots[slot, DEPTH] > 0.0:
+                depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
+                squares = depth * depth + TANGENTIAL * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
+                energy += 0.5 * stiffness * slots[slot, AREA] * squares
+    return energy

@@ -1,0 +1,45 @@
+"""The kernels' working copy of the bodies: one array, a row per body and a last one for the gate.
+
+One array instead of many: a kernel then passes a table of bodies on to the next at no cost. Columns by name:
+"""
+
+from parsim.jit import kernel
+
+POSITION, QUATERNION, VELOCITY = 0, 3, 7
+MOMENTUM, SPIN = 10, 13  # angular, both in global axes
+TURN = 16  # rotation matrix by rows, 9
+GIVEN, LOAD, LOSS, TOTAL = 25, 31, 37, 43  # force and torque: constant; of contacts; their lossy part; their impulse
+HALF, CELL = 49, 52  # half edges; distances of contact elements
+INERTIA, INVERSE, LIGHT = 55, 58, 61  # principal moments; 1 / moments; 1 / mass; the inverses 0 for what is held
+ROLE, MATERIAL = 62, 63
+WIDTH = 64
+
+HELD, ALONE, INVOLVED = 0, 1, 2  # roles: does not move; touches nothing in this step; may touch
+
+
+@kernel
+def three(m, b, at):
+    """Columns `at` to at + 2 of body `b`, a tuple."""
+    return m[b, at], m[b, at + 1], m[b, at + 2]
+
+
+@kernel
+def quaternion_of(m, b):
+    """Orientation of body `b`, a tuple of 4."""
+    return m[b, QUATERNION], m[b, QUATERNION + 1], m[b, QUATERNION + 2], m[b, QUATERNION + 3]
+
+
+@kernel
+def turn_at(m, b):
+    """Rotation matrix of body `b`, nine numbers by rows."""
+    t = TURN
+    return (
+        m[b, t], m[b, t + 1], m[b, t + 2], m[b, t + 3], m[b, t + 4], m[b, t + 5], m[b, t + 6], m[b, t + 7], m[b, t + 8],
+    )  # fmt: skip
+
+
+@kernel
+def pose_of(m, b, shift):
+    """(centre moved by `shift`, rotation matrix) of body `b`."""
+    x, y, z = three(m, b, POSITION)
+    return (x + shift[0], y + shift[1], z + shift[2]), turn_at(m, b)

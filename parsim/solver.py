@@ -1,0 +1,149 @@
+"""The time loop: what happens in a step, when lists are rebuilt, when things are written, when the run stops."""
+
+import math
+
+import numpy as np
+
+from parsim.comm import Comm
+from parsim.setup import Models, check_ranks, water
+from parsim.timers import Timers
+
+_MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
+
+
+class Simulation:
+    """One case in flight on this rank. `step` advances it; everything else looks at its attributes.
+
+    time, s; step_count; dt, s, of the last step; speed, m/s, largest of the water and of body surfaces; active: fluid
+    and awake boundary particles of all ranks; every: all particles of all ranks, sleeping walls included.
+    """
+
+    def __init__(self, case, comm, cuts=None):
+        self.case, self.comm, self.timers = case, comm, Timers()
+        models = self.models = Models(case, comm)
+        self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
+        self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
+        if cuts is not None:
+            self.domain.cuts = cuts
+        self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
+        self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
+        fluid = water(case, self.bodies, self.scheme)
+        mine = self.domain.grid.layer(fluid.x)
+        begin, end = self.domain.layers
+        self._rebuild(fluid.take((mine >= begin) & (mine < end)))
+        self._look()
+
+    @property
+    def fluid(self):
+        """This rank's fluid particles, without images: Particles, kept fields."""
+        return self.domain.particles.take(self.near.fluid)
+
+    def step(self):
+        """Advance water and bodies by one time step."""
+        self.dt = dt = min(self.scheme.time_step(self.speed), self.contacts.limit())
+        if self._outrun(dt):
+            self._rebuild(self.fluid)
+        keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
+        force = self._half_step(dt)
+        self._move(force, dt, keep)
+        with self.timers("continuity"):
+            self.scheme.finish(self.domain, self.near, dt, self.speed)
+        self.time += dt
+        self.step_count += 1
+        self.since += 1
+        with self.timers("sums"):
+            self._look()
+
+    def _half_step(self, dt):
+        """Predict to the half step; accelerations of the water there; the load on the bodies, (bodies, 6)."""
+        p, near, time = self.domain.particles, self.near, self.time + 0.5 * dt
+        with self.timers("predict"):
+            self._place(*self.bodies.drifted(0.5 * dt), time)
+            self.scheme.predict(p, dt)
+        with self.timers("momentum"):
+            self.scheme.accelerate(self.domain, near, dt)
+        with self.timers("bodies"):
+            return self._load(dt)
+
+    def _load(self, dt):
+        if not len(self.bodies.mass):
+            return None
+        centre, _ = self.bodies.drifted(0.5 * dt)
+        force = self.scheme.react(self.domain, self.near, dt)
+        return self.models.samples.loads(self.domain, self.near, force, centre)
+
+    def _move(self, load, dt, keep):
+        with self.timers("move"):
+            self.scheme.move(self.domain, self.near, dt, keep)
+        with self.timers("contacts"):
+            if load is not None:
+                self.contacts.step(self.bodies, load, self.time, dt)
+                self.bodies.velocity *= keep
+                self.bodies.spin *= keep
+        with self.timers("bodies"):
+            self._place(self.bodies.position, self.bodies.quaternion, self.time + dt)
+
+    def _place(self, position, quaternion, time):
+        if self.gate:
+            self.models.gate_samples.place(self.domain.particles, time)
+        if len(self.bodies.mass):
+            self.models.samples.place(self.domain.particles, position, quaternion)
+
+    def _outrun(self, dt):
+        """Whether the lists would miss pairs within this step; the same on every rank."""
+        run = self.case.run
+        travel = self.moved + _MARGIN * dt * self.speed
+        opening = self.gate is not None and self.gate.closed(self.time) != self._closed
+        return 2.0 * travel > run.skin * self.case.spacing or self.since >= run.rebuild_at_most or opening
+
+    def _rebuild(self, fluid):
+        domain, near = self.domain, self.near
+        with self.timers("rebuild"):
+            if self.rebuilds and self.rebuilds % self.case.run.balance_every == 0:
+                domain.balance(near.end - near.start)
+            domain.rebuild(fluid, self.time)
+        with self.timers("neighbours"):
+            near.build(domain.particles, domain.first, domain.grid, domain.own, self.models.reach)
+            if self.gate:
+                near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
+                self._closed = self.gate.closed(self.time)
+        with self.timers("sums"):
+            self.active, self.fluid_count = domain.count(near.fluid.size + near.boundary.size, near.fluid.size)
+        p, at = domain.particles, near.fluid
+        self._start = np.stack([p.x[at], p.y[at], p.z[at]])
+        self.moved, self._solid_moved, self.since = 0.0, 0.0, 0
+        self.rebuilds += 1
+
+    def _look(self):
+        """Largest speed, and how far anything has moved since the lists were built."""
+        fastest, moved = self.scheme.extremes(self.domain.particles, self.near, self._start)
+        fastest, moved = map(float, self.domain.max(fastest, moved))
+        if not fastest < self.scheme.sound:
+            raise FloatingPointError(f"step {self.step_count}, t = {self.time:.6g} s: the water reached {fastest:g} "
+                                     f"m/s, the speed of sound of the model is {self.scheme.sound:g} m/s")
+        solid = max(self.bodies.surface_speed(), self.gate.velocity(self.time) if self.gate else 0.0)
+        self._solid_moved += self.dt * solid
+        self.moved = max(moved, self._solid_moved)
+        self.speed = max(fastest, solid)
+
+
+def run(case, source, out, force=False):
+    """Run a case, read from the file `source`, to its end and write everything to the folder `out`; returns 0.
+
+    Raises InputError for what the case cannot do on this many ranks, WriteError where nothing can be written.
+    """
+    from parsim import launch
+    from parsim.output.recorder import Recorder
+
+    ring = case.box.faces.x_min == "periodic"
+    comm = Comm(ring)
+    launch.check(comm.size)
+    check_ranks(case, comm.size)
+    with Recorder(case, source, out, force, comm) as recorder:
+        simulation = Simulation(case, comm)
+        recorder.begin(simulation)
+        while simulation.time < case.run.until:
+            simulation.step()
+            recorder.watch(simulation)
+        recorder.finish(simulation)
+    return 0

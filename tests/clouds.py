@@ -1,0 +1,59 @@
+"""Small particle clouds for the tests of lists and sweeps, and their slow plain neighbours."""
+
+import numpy as np
+
+from parsim.cells import Grid
+from parsim.comm import Comm
+from parsim.domain import Domain
+from parsim.neighbours import Neighbours
+from parsim.state import FLUID, WALL, Particles, make_id
+
+
+class Fixed:
+    """A source of samples that are always there."""
+
+    def __init__(self, particles):
+        self.particles = particles
+
+    def samples(self, slab, time):
+        p = self.particles
+        return p.take(slab.cells(p.x, p.y, p.z) >= 0)
+
+
+def cloud(count, size, seed, walls=0):
+    """`count` random fluid particles and `walls` wall ones in a box of `size` (3,), with random fields."""
+    rng = np.random.default_rng(seed)
+    place = rng.uniform(0, 1, (count + walls, 3)) * size
+    kind = np.where(np.arange(count + walls) < count, FLUID, WALL)
+    ident = np.concatenate([make_id(FLUID, np.arange(count)), make_id(WALL, np.arange(walls))])
+    every = Particles(count + walls, id=ident, kind=kind, x=place[:, 0], y=place[:, 1], z=place[:, 2])
+    for name in ("u", "v", "w"):
+        setattr(every, name, rng.normal(size=count + walls))
+    every.n[:] = rng.uniform(90, 110, count + walls)
+    every.scale[count:] = rng.uniform(0.8, 1.2, walls)
+    return every
+
+
+def listed(every, size, radius, periodic=(False, False, False)):
+    """A domain and lists of all particles on one rank."""
+    grid = Grid(np.zeros(3), np.asarray(size, float), radius, periodic)
+    fluid = every.kind == FLUID
+    domain = Domain(grid, Comm(periodic[0]), [Fixed(every.take(~fluid))])
+    domain.rebuild(every.take(fluid), 0.0)
+    near = Neighbours(32)
+    near.build(domain.particles, domain.first, grid, domain.own, radius)
+    return domain, near
+
+
+def lattice(counts, spacing, jitter=0.0, seed=0):
+    """A periodic lattice of fluid, moved by up to `jitter` spacings: particles and the box size (3,)."""
+    rng = np.random.default_rng(seed)
+    axes = [(np.arange(c) + 0.5) * spacing for c in counts]
+    place = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+    place = place + rng.uniform(-jitter, jitter, place.shape) * spacing
+    size = np.array(counts) * spacing
+    place %= size
+    count = len(place)
+    every = Particles(count, id=make_id(FLUID, np.arange(count)), kind=FLUID,
+                      x=place[:, 0], y=place[:, 1], z=place[:, 2])
+    return every, size

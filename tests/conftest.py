@@ -1,0 +1,65 @@
+"""What several test files need: jobs of several ranks that cannot hang."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from parsim import launch
+
+PATIENCE = 120  # s for one job
+
+
+def pytest_configure(config):
+    """Give every mpirun a time limit of its own, also those that a test starts without the fixture."""
+    os.environ.setdefault("MPIEXEC_TIMEOUT", str(2 * PATIENCE))
+
+
+def _arguments(program):
+    words = [str(word) for word in (program if isinstance(program, list | tuple) else [program])]
+    start = [sys.executable] if words[0].endswith(".py") else [sys.executable, "-m", "parsim"]
+    return start + words
+
+
+def _end(process):
+    # mpirun takes its ranks along on SIGTERM, which it cannot do once it is killed
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        process.send_signal(number)
+        try:
+            return process.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            continue
+    return "", ""
+
+
+@pytest.fixture
+def mpirun():
+    """`mpirun(n, program, timeout=120)`: a Python file, or the words after `parsim`, as `n` ranks.
+
+    `program` is one path ending in .py, or a list: such a path and its arguments, or `["run", case, ...]`.
+    Returns a CompletedProcess with text output; a job that outlives `timeout` (s) is ended and fails the test.
+    """
+
+    def run(n, program, timeout=PATIENCE):
+        line = launch.command(n, _arguments(program))
+        process = subprocess.Popen(
+            line,
+            env=launch.environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        try:
+            out, err = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            out, err = _end(process)
+            pytest.fail(f"{' '.join(line)} did not end in {timeout} s\n{out[-2000:]}\n{err[-2000:]}")
+        except BaseException:
+            _end(process)
+            raise
+        return subprocess.CompletedProcess(line, process.returncode, out, err)
+
+    return run

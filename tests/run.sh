@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Runs the tests:   bash tests/run.sh [PYTEST ARGUMENTS]      the first start makes .venv; see jobs/setup.sh
+set -euo pipefail
+# shellcheck source=SCRIPTDIR/../jobs/setup.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/../jobs/setup.sh"
+set_up pictures tests
+cd -- "$root"
+exec "$python" -m pytest "$@"

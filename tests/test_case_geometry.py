@@ -1,0 +1,58 @@
+"""Turned boxes: overlap by separating axes, and what it means for the bodies of a case."""
+
+import math
+
+import numpy as np
+import pytest
+from example_cases import bodies, write
+
+from parsim import case_geometry as geometry
+from parsim.case import load
+from parsim.errors import InputError
+
+
+@pytest.fixture
+def base(tmp_path):
+    return write(tmp_path)["3d"]
+
+
+def test_bodies_that_touch_or_pass_by_a_corner_are_allowed(base):
+    first = ("A1", "[0.15,0.05,0.1]", "[0,0,0]")
+    load(base, [bodies(first, ("A2", "[0.20,0.05,0.1]", "[0,0,0]"))])
+    # turned by 45 degrees their extents overlap, they do not: half diagonal 0.0354, half edge 0.025
+    load(base, [bodies(first, ("A2", "[0.212,0.05,0.1]", "[0,0,45]"))])
+    with pytest.raises(InputError, match="A2: overlaps bodies.A1"):
+        load(base, [bodies(first, ("A2", "[0.210,0.05,0.1]", "[0,0,45]"))])
+
+
+def test_bodies_overlap_across_periodic_faces(base):
+    sides = ["box.faces.y_min=periodic", "box.faces.y_max=periodic"]
+    pair = bodies(("A1", "[0.2,0.01,0.1]", "[0,0,0]"), ("A2", "[0.2,0.07,0.1]", "[0,0,0]"))
+    with pytest.raises(InputError) as caught:
+        load(base, [*sides, pair])
+    assert any("A2: overlaps bodies.A1 by 0.01 m" in message for message in caught.value.messages)
+
+
+def test_overlap_agrees_with_points_inside_both():
+    random = np.random.default_rng(1)
+    grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 25)] * 3), axis=-1).reshape(-1, 3)
+    seen = set()
+    for _ in range(200):
+        first, second = (
+            geometry.TurnedBox(centre, half, geometry.rotation(angles))
+            for centre, half, angles in random.uniform([[-1], [0.2], [-180]], [[1], [1], [180]], (2, 3, 3))
+        )
+        points = (grid * first.half) @ first.axes.T + first.centre
+        common = bool(np.any(np.all(np.abs((points - second.centre) @ second.axes) <= second.half, axis=1)))
+        depth = geometry.overlap(first, second)
+        assert depth == pytest.approx(geometry.overlap(second, first))
+        # the grid misses overlaps thinner than its own step
+        assert common == (depth > 0) or (not common and depth < 0.1)
+        seen.add(common)
+    assert seen == {True, False}
+
+
+def test_rotation_is_about_x_then_y_then_z():
+    assert geometry.rotation((90, 0, 90)) @ [0, 1, 0] == pytest.approx([0, 0, 1])
+    assert geometry.rotation((0, 90, 90)) @ [0, 0, 1] == pytest.approx([0, 1, 0])
+    assert geometry.rotation((0, 30, 0)) @ [1, 0, 0] == pytest.approx([math.sqrt(3) / 2, 0, -0.5])

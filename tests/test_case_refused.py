@@ -1,0 +1,151 @@
+"""A wrong case file is refused before anything is written, in words that name key, value and what is allowed."""
+
+import pytest
+from example_cases import bodies, write
+
+from parsim.__main__ import main
+from parsim.case import load
+
+# base case, changes, fragments of the messages
+BROKEN = {
+    "unknown key in a table": ("3d", ["water.suport=3"], ["water.suport: unknown key", "did you mean water.support?"]),
+    "unknown key of a body": ("3d", ["bodies.A1.densty=3"], ["bodies.A1.densty: unknown key", "bodies.A1.density?"]),
+    "key in the wrong table": ("3d", ["until=3.0"], ["until: unknown key", "did you mean run.until?"]),
+    "unknown table": ("3d", ["wind.speed=3.0"], ["wind: unknown key", "allowed: title, dimensions"]),
+    "key of another table": ("3d", ["run.restitution=0.5"], ["run.restitution: unknown key; did you mean"]),
+    "text for a number": ("3d", ["spacing=fine"], ["spacing = 'fine': must be a number", "l0, m"]),
+    "switch for a number": ("3d", ["run.cfl=true"], ["run.cfl = True: must be a number"]),
+    "number for a switch": ("3d", ["water.shifting=1"], ["water.shifting = 1: must be true or false"]),
+    "number for a text": ("3d", ["title=1"], ["title = 1: must be a text"]),
+    "number for a whole number": ("3d", ["run.rebuild_at_most=2.5"], ["run.rebuild_at_most = 2.5: must be a whole"]),
+    "number for a table": ("3d", ["gate=1"], ["gate = 1: must be a table"]),
+    "number for a list": ("3d", ["bodies=1"], ["bodies = 1: must be a list"]),
+    "value inside a value": ("3d", ["spacing.x=1"], ["--set spacing.x=1: spacing is a single value"]),
+    "too many entries": ("3d", ["gravity=[0,0,0,1]"], ["gravity = [0, 0, 0, 1]: must have 3 entries"]),
+    "too few entries": ("3d", ["gravity=[0,0]"], ["gravity.2: missing"]),
+    "not a number": ("3d", ["run.until=nan"], ["run.until = nan: must be", "finite"]),
+    "infinite": ("3d", ["gravity=[0,0,-inf]"], ["gravity.2 = -inf: must be", "finite"]),
+    "zero end": ("3d", ["run.until=0"], ["run.until = 0: must be greater than 0"]),
+    "negative settling": ("3d", ["run.settle=-1"], ["run.settle = -1: must be at least 0"]),
+    "cfl too large": ("3d", ["run.cfl=2"], ["run.cfl = 2: must be at most 1.75"]),
+    "support too small": ("3d", ["water.support=1.5"], ["water.support = 1.5: must be at least 2.1"]),
+    "frames of no time": ("3d", ["output.frames=0"], ["output.frames = 0: must be greater than 0"]),
+    "poisson out of range": ("3d", ["materials.polypropylene.poisson=0.5"], ["poisson = 0.5: must be less than 0.5"]),
+    "unknown scheme": ("3d", ["water.scheme=sph"], ["water.scheme = 'sph': must be 'wcmps'"]),
+    "unknown face": ("3d", ["box.faces.x_min=glass"], ["box.faces.x_min = 'glass': must be 'wall', 'open' or 'per"]),
+    "four dimensions": ("3d", ["dimensions=4"], ["dimensions = 4: must be 2 or 3"]),
+    "spacing": ("3d", ["spacing=0.007"],
+                ["spacing = 0.007: does not divide box x = 0.4", "that do: 0.006666666666666667, 0.00714285"]),
+    "spacing above all edges": ("3d", ["spacing=0.9"], ["spacing = 0.9: does not divide", "that do: 0.1"]),
+    "no common measure": ("3d", ["box.max=[0.4,0.1,0.2001]"], ["no usable common measure"]),
+    "box inside out": ("3d", ["box.min=[0,0,0.3]"], ["box.max", "z must be greater than that of box.min"]),
+    "half periodic": ("3d", ["box.faces.y_min=periodic"], ['box.faces.y_max = "wall"', 'both or none must be "per']),
+    "fill outside": ("3d", ["water.fill.1.max=[0.5,0.1,0.02]"], ["water.fill.1.max = [0.5, 0.1, 0.02]: x is outside"]),
+    "empty fill": ("3d", ["water.fill.0.max=[0.1,0.1,0.0]"], ["water.fill.0.max", "empty, z must be greater"]),
+    "fills overlap": ("3d", ["water.fill.1.min=[0.05,0,0]"], ["water.fill.1: overlaps water.fill.0"]),
+    "no gravity, no speed": ("3d", ["gravity=[0,0,0]"], ["water.speed: missing", "without gravity"]),
+    "no water, no speed": ("3d", ["water.fill=[]", "bodies=[]"], ["water.speed: missing", "without fill"]),
+    "gate outside": ("3d", ["gate.max_x=0.41"], ["gate.max_x = 0.41: outside the tank; must be 0.0 to 0.4"]),
+    "gate inside out": ("3d", ["gate.max_x=0.09"], ["gate.max_x = 0.09: must be greater than gate.min_x = 0.1"]),
+    "gate without walls": ("3d", ["box.faces.y_max=open"], ["gate: needs walls", 'y_max = "open"']),
+    "gate without place": ("3d", ["gate={min_x=0.1}"], ["gate.max_x: missing; downstream face, m"]),
+    "body in the gate": ("3d", [bodies(("A1", "[0.08,0.05,0.1]", "[0,0,0]"))], ["A1: is in the gate", "0.005 m"]),
+    "bodies overlap": ("3d", [bodies(("A1", "[0.03,0.03,0.1]", "[0,0,0]"), ("A2", "[0.07,0.07,0.1]", "[0,0,0]"))],
+                       ["bodies.A2: overlaps bodies.A1"]),
+    "same name twice": ("3d", [bodies(("A1", "[0.03,0.03,0.1]", "[0,0,0]"), ("A1", "[0.2,0.05,0.1]", "[0,0,0]"))],
+                        ['name = "A1" is given more']),
+    "body outside": ("3d", [bodies(("A1", "[0.2,0.09,0.1]", "[0,0,0]"))], ["A1.position", "outside", "0.0 to 0.1"]),
+    "corner outside": ("3d", [bodies(("A1", "[0.2,0.026,0.1]", "[0,0,10]"))], ["outside the box, reaches"]),
+    "spacing larger than a body": ("3d", ["spacing=0.02"], ["bodies.A1.shape.size", "thinner than two particles"]),
+    "bad name": ("3d", [bodies(("A 1", "[0.2,0.05,0.1]", "[0,0,0]"))],
+                 ["bodies.A 1.name = 'A 1': must be a letter followed by"]),
+    "density and mass": ("3d", ["bodies.A1.mass=0.1"], ["bodies.A1.density, mass: exactly one", "density = 868.0 and"]),
+    "unknown material": ("3d", ["bodies.A1.material=polypropilene"],
+                         ['bodies.A1.material = "polypropilene": no such material', 'mean "polypropylene"?']),
+    "unknown wall material": ("3d", ["wall_material=glass"], ['wall_material = "glass": no such material; allowed']),
+    "heavy body afloat": ("3d", ["bodies.A1.density=1000"], ["bodies.A1.position", "does not float"]),
+    "afloat on the floor": ("3d", ["bodies.A1.position=[0.2,0.05,'float']", "water.fill.1.max=[0.4,0.1,0.01]"],
+                            ["draught 0.01736 m is more than the depth"]),
+    "afloat without water": ("3d", ["bodies.A1.position=[0.1025,0.05,'float']"], ["no fill under its centre x ="]),
+    "afloat and tilted": ("3d", ["bodies.A1.angles=[0,5,0]"], ["faces must be level"]),
+    "wrong word for a height": ("3d", ["bodies.A1.position=[0.05,0.05,'flot']"],
+                                ["bodies.A1.position.2 = 'flot': must be a number or 'float'"]),
+    "fixed but moving": ("3d", ["bodies.A1.fixed=true", "bodies.A1.spin=[0,0,1]"], ["bodies.A1.fixed = true", "zero"]),
+    "gauge outside": ("3d", ["output.gauges.middle.x=0.5"], ["output.gauges.middle.x = 0.5: outside the box"]),
+    "no such body": ("3d", ["bodies.A2.density=900"], ["--set bodies.A2.density=900: bodies has no entry A2", "A1"]),
+    "no such place": ("3d", ["water.fill.7.max=[1,1,1]"], ["water.fill has no entry 7; allowed: 0, 1"]),
+    "set without a value": ("3d", ["spacing"], ["--set spacing: must be key.path=value"]),
+    "plane: tilt about x": ("2d", ["bodies.square.angles=[5,0,0]"], ["angles = [5.0, 0.0, 0.0]: x and z must be 0"]),
+    "plane: spin about z": ("2d", ["bodies.square.spin=[0,0,1]"], ["spin = [0.0, 0.0, 1.0]: x and z must be 0"]),
+    "plane: body width": ("2d", ["bodies.square.shape.size=[0.1,0.5,0.1]"], ["y must be 1 in a 2D case"]),
+    "plane: body place": ("2d", ["bodies.square.position=[0.25,0.4,0.4]"], ["y must be 0.5 in a 2D case"]),
+    "plane: box width": ("2d", ["box.max=[0.5,2.0,0.6]"], ["y = 0.0 to 2.0: must be 0 to 1 in a 2D case"]),
+    "plane: y faces": ("2d", ["box.faces.y_min=open"], ["a 2D case has none; leave them out"]),
+    "several at once": ("3d", ["water.suport=3.1", "spacing=0.007", "gate.max_x=7", "wall_material=glass"],
+                        ["water.support?", "spacing = 0.007", "gate.max_x = 7", 'wall_material = "glass"']),
+}  # fmt: skip
+
+# text of a whole file, fragments of the messages
+UNREADABLE = {
+    "empty": ("", ["dimensions: missing", "spacing: missing", "box: missing", "run: missing"]),
+    "syntax": ("spacing = 1\nrun = [}\n", ["not valid TOML", "line 2"]),
+    "key twice": ("spacing = 1\nspacing = 2\n", ["not valid TOML", "line 2"]),
+    "deep": ("a = " + "[" * 5000 + "]" * 5000, ["not valid TOML"]),
+    "long number": ("spacing = " + "9" * 5000, ["not valid TOML"]),
+    "huge number": ("spacing = " + "9" * 400, ["spacing = 999"]),
+    "bytes": (b"\xff\xfe\x00", ["not a text file in UTF-8"]),
+    "extends itself": ('extends = "case.toml"\n', ["extends = loops", "case.toml -> case.toml"]),
+    "extends nothing": ('extends = "other.toml"\n', ["other.toml: no such file"]),
+    "extends a number": ("extends = 1\n", ["extends = 1: must be the path of a case file"]),
+}
+
+
+@pytest.fixture
+def base(tmp_path):
+    return write(tmp_path)
+
+
+def refused(capsys, path, changes, fragments):
+    """The command line refuses the case twice over: exit code 2, no traceback, nothing written."""
+    before = sorted(path.parent.rglob("*"))
+    options = [word for change in changes for word in ("--set", change)]
+    for words in (["check", str(path)], ["run", str(path), "-o", str(path.parent / "out")]):
+        assert main(words + options) == 2
+        output = capsys.readouterr()
+        assert all(line.startswith("error: ") for line in output.err.splitlines())
+        assert not output.out
+        for fragment in fragments:
+            assert fragment in output.err
+    assert sorted(path.parent.rglob("*")) == before
+    return output.err
+
+
+@pytest.mark.parametrize("kind", ["3d", "2d"])
+def test_the_cases_the_broken_ones_are_made_from_are_valid(base, kind):
+    assert load(base[kind]).warnings() == []
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_values_are_refused(capsys, base, name):
+    kind, changes, fragments = BROKEN[name]
+    refused(capsys, base[kind], changes, fragments)
+
+
+@pytest.mark.parametrize("name", UNREADABLE)
+def test_broken_files_are_refused(capsys, tmp_path, name):
+    content, fragments = UNREADABLE[name]
+    path = tmp_path / "case.toml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    refused(capsys, path, [], fragments)
+
+
+def test_missing_files_are_refused(capsys, base):
+    misspelt = base["3d"].with_name("spaec.toml")
+    refused(capsys, misspelt, [], ["spaec.toml: no such file; did you mean", "space.toml?"])
+    refused(capsys, base["3d"].parent, [], ["is a folder"])
+    refused(capsys, base["3d"] / "inside.toml", [], ["cannot be read"])
+
+
+def test_one_message_for_each_fault(capsys, base):
+    err = refused(capsys, base["3d"], ["water.suport=3.1", "spacing=0.007", "gate.max_x=7"], [])
+    assert len(err.splitlines()) == 3

@@ -1,0 +1,209 @@
+"""The command line: what each command hands on, what it prints, and the exit code each ending has."""
+
+import json
+import os
+import sys
+import types
+from pathlib import Path
+
+import pytest
+from example_cases import ROOT, write
+from fake_run import make
+
+from parsim import __version__, estimate, launch
+from parsim.__main__ import main
+from parsim.case import load
+from parsim.errors import InputError, WriteError
+
+BLOCKS = ROOT / "cases" / "ice_release" / "4_blocks_dry.toml"
+LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK")
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    """A solver that notes what it is asked for and ends as `solver.ending` says."""
+    fake = types.ModuleType("parsim.solver")
+    fake.calls, fake.ending = [], 0
+
+    def run(case, source, out, force):
+        fake.calls.append((case, source, out, force))
+        if isinstance(fake.ending, BaseException):
+            raise fake.ending
+        return fake.ending
+
+    fake.run = run
+    monkeypatch.setitem(sys.modules, "parsim.solver", fake)
+    return fake
+
+
+def test_run_hands_the_complete_case_to_the_solver(solver, tmp_path):
+    case = write(tmp_path)["3d"]
+    words = ["run", str(case), "-o", "out", "--until", "0.25", "--set", "bodies.A1.density=900", "--set", "run.until=9"]
+    assert main([*words, "--force"]) == 0
+    (given, source, out, force), = solver.calls
+    assert given == load(case, ["bodies.A1.density=900", "run.until=0.25"])
+    assert source == case and str(out) == "out" and force is True
+
+
+@pytest.mark.parametrize(
+    ("ending", "code", "said"),
+    [
+        (0, 0, ""),
+        (None, 0, ""),
+        (75, 75, ""),
+        (InputError(["OUT: exists", "second"]), 2, "error: OUT: exists\nerror: second\n"),
+        (WriteError("out/x", "no space"), 74, "error: cannot write out/x: no space\n"),
+        (KeyboardInterrupt(), 130, ""),
+    ],
+    ids=str,
+)
+def test_endings_of_a_run(solver, capsys, ending, code, said):
+    solver.ending = ending
+    assert main(["run", str(BLOCKS), "-o", "out"]) == code
+    assert capsys.readouterr().err == said
+
+
+def test_a_fault_of_the_program_shows_rank_and_traceback(solver, capsys, monkeypatch):
+    for key, value in zip(LAUNCHED, "21", strict=True):
+        monkeypatch.setenv(key, value)
+    solver.ending = ZeroDivisionError("lost")
+    assert main(["run", str(BLOCKS), "-o", "out"]) == 1
+    said = capsys.readouterr().err
+    assert "rank 1 of 2 failed" in said and "Traceback" in said and "ZeroDivisionError: lost" in said
+
+
+@pytest.mark.parametrize(("rank", "said"), [("0", True), ("1", False)])
+def test_one_rank_tells_of_bad_input_and_all_end_alike(capsys, monkeypatch, rank, said):
+    for key, value in zip(LAUNCHED, ("2", rank), strict=True):
+        monkeypatch.setenv(key, value)
+    assert main(["check", "nowhere.toml"]) == 2
+    assert ("nowhere.toml: no such file" in capsys.readouterr().err) is said
+
+
+def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
+    started = []
+    monkeypatch.setattr(launch, "mpirun", lambda ranks, arguments: started.append((ranks, arguments)) or 3)
+    words = ["run", str(BLOCKS), "-o", "a b", "--set", "spacing=0.01", "--set", "title=x = y", "--until", "1e-1"]
+    assert main([*words, "--force", "-n", "2"]) == 3
+    (ranks, arguments), = started
+    assert ranks == 2 and arguments[:4] == [sys.executable, "-P", "-m", "parsim"] and not solver.calls
+    assert main(arguments[4:]) == 0
+    assert solver.calls == [(load(BLOCKS, ["spacing=0.01", "title=x = y", "run.until=0.1"]), BLOCKS, Path("a b"), True)]
+
+
+def test_n_checks_the_case_first_and_is_refused_inside_a_job(capsys, monkeypatch):
+    monkeypatch.setattr(launch, "mpirun", lambda *_: pytest.fail("started"))
+    assert main(["run", str(BLOCKS), "-o", "out", "-n", "2", "--set", "spacing=0.007"]) == 2
+    for key, value in zip(LAUNCHED, "20", strict=True):
+        monkeypatch.setenv(key, value)
+    assert main(["run", str(BLOCKS), "-o", "out", "-n", "2"]) == 2
+    assert "2 processes of this command are running already" in capsys.readouterr().err
+
+
+def test_threads_are_set_before_numba_is_loaded(solver, monkeypatch):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "1")
+    main(["run", str(BLOCKS), "-o", "out", "--threads", "3"])
+    assert os.environ["NUMBA_NUM_THREADS"] == "3"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["chek"], ["check"], ["run", "case.toml"], ["run", "case.toml", "-o", "out", "-n", "0"], ["check", "x", "--bad"],
+     ["run", "case.toml", "-o", "out", "--until", "soon"], ["compare", "one"]],
+    ids=" ".join,
+)  # fmt: skip
+def test_misused_commands_end_with_2(capsys, words):
+    assert main(words) == 2
+    assert "Error" in capsys.readouterr().err
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"parsim {__version__}\n"
+
+
+def test_check_prints_the_estimate_and_warnings(capsys):
+    assert main(["check", str(BLOCKS), "-n", "4", "--set", "spacing=0.01"]) == 0
+    said = capsys.readouterr().out
+    for word in ("a valid case", "water", "4,0", "of 0.000375 s, from -0.3 to 1.2 s", "on each of 4 ranks", "300,000"):
+        assert word in said
+    assert said.endswith("warning: bodies.A1 and 3 more: 2 particles across the thinnest side, 0.0195 m; "
+                         "four or more give usable loads\n")
+
+
+@pytest.mark.parametrize("name", ["ice_release/4_blocks_dry", "ice_release/9_blocks_50mm", "floating_square/half"])
+def test_estimate_counts_what_is_built(name):
+    from parsim.boundary.wall import Walls
+    from parsim.coupling import BodySamples
+    from parsim.fluid.wcmps import WCMPS
+    from parsim.setup import water
+    from parsim.solid.bodies import from_case
+
+    case = load(ROOT / "cases" / f"{name}.toml")
+    cost, bodies = estimate.estimate(case), from_case(case)
+    assert cost.wall == len(Walls(case, 4))
+    assert cost.body == len(BodySamples(case, bodies, 4))
+    assert cost.water == pytest.approx(len(water(case, bodies, WCMPS(case))), rel=0.03)
+
+
+def test_estimate_of_a_small_tank_by_hand(tmp_path):
+    cost = estimate.estimate(load(write(tmp_path)["2d"]))
+    # 50 x 40 of water less half of 10 x 10, 50 x 60 inside, four layers on three sides
+    assert (cost.water, cost.body, cost.wall, cost.gate) == (1950, 96, 58 * 64 - 50 * 60, 0)
+    assert cost.steps == -(-1.0 // (0.01 / (11 * 2 * (9.81 * 0.4) ** 0.5)))
+
+
+def test_estimate_needs_no_room_for_what_it_counts():
+    cost = estimate.estimate(load(BLOCKS, ["spacing=1e-6"]))
+    assert cost.water > 1e15 and cost.body > 1e11
+
+
+def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "river"]) == 0
+    assert main(["check", "river.toml"]) == 0
+    (tmp_path / "river.toml").write_text("mine")
+    assert main(["new", "river.toml"]) == 2
+    assert "river.toml exists already" in capsys.readouterr().err
+    assert (tmp_path / "river.toml").read_text() == "mine"
+    assert main(["new", "no/such/river"]) == 74
+
+
+def test_schema_is_json(capsys):
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out)["properties"]["spacing"]["description"].endswith("divide the box")
+
+
+def test_info_tells_of_a_run(tmp_path, capsys):
+    make(tmp_path / "out")
+    assert main(["info", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    for word in ("status", "frames", "energy", "fluid"):
+        assert word in said
+    assert main(["info", str(tmp_path)]) == 2
+
+
+FAILING = """
+import sys, types
+from mpi4py import MPI
+from parsim.__main__ import main
+from parsim.errors import InputError, WriteError
+
+def run(case, source, out, force):
+    endings = {"fault": ValueError("lost"), "write": WriteError("out", "full"), "together": InputError("no")}
+    if MPI.COMM_WORLD.rank == 1 or sys.argv[1] == "together":
+        raise endings[sys.argv[1]]
+    MPI.COMM_WORLD.recv(source=1)
+
+sys.modules["parsim.solver"] = types.SimpleNamespace(run=run)
+sys.exit(main(["run", sys.argv[2], "-o", "out"]))
+"""
+
+
+@pytest.mark.parametrize(("kind", "code", "said"), [("fault", 1, "lost"), ("write", 74, "full"), ("together", 2, "no")])
+def test_one_failing_rank_ends_the_job(mpirun, tmp_path, kind, code, said):
+    program = tmp_path / "failing.py"
+    program.write_text(FAILING)
+    ended = mpirun(2, [program, kind, BLOCKS], timeout=60)
+    assert ended.returncode == code
+    assert said in ended.stderr

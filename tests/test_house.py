@@ -1,0 +1,182 @@
+"""The house rules, kept by reading the sources: who imports whom, what kernels may do, what a file may be."""
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCES = sorted((ROOT / "parsim").rglob("*.py"))
+TESTS = sorted((ROOT / "tests").rglob("*.py"))
+SCRIPTS = sorted([*(ROOT / "jobs").glob("*.sh"), *(ROOT / "tests").glob("*.sh"), ROOT / ".ci" / "run"])
+TOP = {"pyproject.toml", "parsim", "tests", "cases", "jobs", "README.md", "LICENSE", "CHANGELOG.md", "CITATION.cff"}
+
+# what the kernels of particle loops may not call: sums in an order of their own, and functions whose last bit
+# depends on the vector length they are compiled for
+REDUCTIONS = {
+    "sum",
+    "dot",
+    "vdot",
+    "matmul",
+    "einsum",
+    "mean",
+    "average",
+    "cumsum",
+    "prod",
+    "trapezoid",
+    "inner",
+    "norm",
+}
+ROUNDED = {"pow", "power", "exp", "expm1", "log", "log1p", "log2", "log10", "sin", "cos", "tan", "tanh", "sinh", "cosh"}
+STRICT = ("fluid/", "neighbours.py", "cells.py", "coupling.py")
+ABOVE_KERNELS = {"comm", "domain", "solver", "setup", "launch", "case", "output", "report"}
+BESIDE_REPORT = {"output", "errors", "case", "report", "launch"}
+
+
+def name(path):
+    return str(path.relative_to(ROOT))
+
+
+def tree(path):
+    return ast.parse(path.read_text(), str(path))
+
+
+def imports(parsed):
+    """Full dotted names of everything a module imports, at any depth."""
+    found = set()
+    for node in ast.walk(parsed):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute here"
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+def own(parsed):
+    """The parts of parsim a module imports: `domain`, `fluid`, ..."""
+    return {word.split(".")[1] for word in imports(parsed) if word.startswith("parsim.")}
+
+
+def kernels(parsed):
+    """Functions compiled by @kernel or @rows."""
+    for node in ast.walk(parsed):
+        if isinstance(node, ast.FunctionDef) and any(_last(d) in ("kernel", "rows") for d in node.decorator_list):
+            yield node
+
+
+def _last(node):
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
+def arithmetic_faults(function):
+    """What in a kernel can give different last bits for another length, order or vector width."""
+    for node in ast.walk(function):
+        if isinstance(node, ast.Call) and _last(node.func) in REDUCTIONS | ROUNDED:
+            yield f"line {node.lineno}: {_last(node.func)}()"
+        elif isinstance(node, ast.BinOp | ast.AugAssign) and isinstance(node.op, ast.Pow | ast.MatMult):
+            yield f"line {node.lineno}: {'**' if isinstance(node.op, ast.Pow) else '@'}"
+
+
+def reductions(function):
+    """Scalars summed up over the iterations of a prange: their order depends on the number of threads."""
+    for loop in ast.walk(function):
+        if isinstance(loop, ast.For) and isinstance(loop.iter, ast.Call) and _last(loop.iter.func) == "prange":
+            inside = {_last(t) for n in ast.walk(loop) if isinstance(n, ast.Assign) for t in _targets(n)}
+            inside |= {_last(loop.target)} | {_last(n.target) for n in ast.walk(loop) if isinstance(n, ast.For)}
+            for node in ast.walk(loop):
+                if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+                    if node.target.id not in inside:
+                        yield f"line {node.lineno}: {node.target.id} is summed over a prange"
+
+
+def _targets(assign):
+    for target in assign.targets:
+        yield from target.elts if isinstance(target, ast.Tuple) else [target]
+
+
+def public(parsed):
+    """Public functions and classes of a module, and the public methods of these classes."""
+    for node in parsed.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            yield node
+            for inner in node.body if isinstance(node, ast.ClassDef) else ():
+                if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
+                    yield inner
+
+
+def test_the_rules_can_be_broken():
+    bad = ast.parse(
+        "@rows\ndef f(x, y):\n  t = 0.0\n  for i in prange(9):\n    s = 0.0\n    for j in range(3):\n"
+        "      s += x[j] ** 2\n    t += s\n    y[i] = np.sum(x) + math.exp(s) + x @ y\n  return t\n"
+    )
+    (function,) = kernels(bad)
+    assert sorted(fault.split(": ")[1] for fault in arithmetic_faults(function)) == ["**", "@", "exp()", "sum()"]
+    assert list(reductions(function)) == ["line 8: t is summed over a prange"]
+    assert own(ast.parse("from parsim import comm\nfrom parsim.fluid.weights import w")) == {"comm", "fluid"}
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name)
+def test_imports(path):
+    parsed = tree(path)
+    used, inside = imports(parsed), name(path).removeprefix("parsim/")
+    roots = {word.split(".")[0] for word in used}
+    assert "mpi4py" not in roots or inside == "comm.py", "only comm.py imports mpi4py"
+    assert not {"numba.njit", "numba.jit"} & used or inside == "jit.py", "kernels are made by parsim.jit"
+    if any(kernels(parsed)) and inside != "jit.py":
+        assert not own(parsed) & ABOVE_KERNELS, "kernels import downward only"
+    if inside.startswith("report/"):
+        assert own(parsed) <= BESIDE_REPORT, "report reads files and knows no solver"
+    if inside.startswith(("fluid/", "solid/", "boundary/", "coupling")):
+        assert not own(parsed) & {"comm", "launch"}, "the physics never sees a rank"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name)
+def test_kernels_keep_their_bits(path):
+    strict = name(path).removeprefix("parsim/").startswith(STRICT)
+    faults = []
+    for function in kernels(tree(path)):
+        faults += [f"{function.name} {fault}" for fault in reductions(function)]
+        faults += [f"{function.name} {fault}" for fault in arithmetic_faults(function) if strict]
+    assert not faults
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name)
+def test_public_things_are_described(path):
+    parsed = tree(path)
+    assert ast.get_docstring(parsed), "a module says what it is for"
+    assert [node.name for node in public(parsed) if not ast.get_docstring(node)] == []
+
+
+@pytest.mark.parametrize("path", SOURCES + TESTS + SCRIPTS, ids=name)
+def test_files_are_short_and_finished(path):
+    text = path.read_text()
+    assert text.count("\n") <= 300, "split it"
+    assert not re.search(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X)\b", text)
+
+
+def test_top_level_holds_only_what_it_should():
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True).stdout.split("\n")
+    names = {line.split("/")[0] for line in listed if line and not line.startswith(".")}
+    assert names <= TOP
+
+
+def test_files_named_in_the_readme_exist():
+    text = (ROOT / "README.md").read_text()
+    named = set(re.findall(r"\]\((?!https?:)([^)#]+)\)", text))
+    named |= set(re.findall(r"\b((?:parsim|tests|cases|jobs)/[\w./-]*\w)", text))
+    assert len(named) > 10
+    assert sorted(path for path in named if not (ROOT / path).exists()) == []
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=name)
+def test_scripts_parse(path):
+    subprocess.run(["bash", "-n", path], check=True)
+
+
+def test_ruff_finds_nothing():
+    ran = subprocess.run([sys.executable, "-m", "ruff", "check", "."], cwd=ROOT, capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stdout

@@ -1,0 +1,153 @@
+"""The launcher: which mpirun, whether its processes find each other, what comes back from a job."""
+
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+
+import pytest
+
+from parsim import doctor, launch
+from parsim.errors import InputError
+
+LAUNCHED = {
+    "Open MPI": {"OMPI_COMM_WORLD_SIZE": "4", "OMPI_COMM_WORLD_RANK": "1"},
+    "PMI": {"PMI_SIZE": "4", "PMI_RANK": "1"},
+    "srun": {"SLURM_STEP_NUM_TASKS": "4", "SLURM_PROCID": "1", "SLURM_NTASKS": "4"},
+}
+# one process in a batch script or an interactive step, where Slurm tells of the tasks that srun would start
+SINGLE = {
+    "nothing": {},
+    "sbatch": {"SLURM_NTASKS": "4", "SLURM_PROCID": "0", "SLURM_JOB_ID": "7"},
+    "salloc": {"SLURM_NTASKS": "4", "SLURM_PROCID": "0", "SLURM_STEP_NUM_TASKS": "1"},
+    "one rank": {"OMPI_COMM_WORLD_SIZE": "1", "OMPI_COMM_WORLD_RANK": "0"},
+}
+
+
+@pytest.fixture
+def started_by(monkeypatch):
+    for name in list(os.environ):
+        if name.startswith(("OMPI_COMM", "PMI_", "SLURM_")):
+            monkeypatch.delenv(name)
+    return lambda variables: [monkeypatch.setenv(*item) for item in variables.items()]
+
+
+@pytest.fixture
+def program(tmp_path):
+    def write(text, name="program.py"):
+        path = tmp_path / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("name", LAUNCHED)
+def test_ranks_that_do_not_find_each_other_are_refused(name, started_by):
+    started_by(LAUNCHED[name])
+    assert launch.world() == (1, 4)
+    with pytest.raises(InputError, match=r"started 4 processes.*-n 4"):
+        launch.check(1)
+    launch.check(4)
+
+
+@pytest.mark.parametrize("name", SINGLE)
+def test_one_process_is_accepted(name, started_by):
+    started_by(SINGLE[name])
+    assert launch.world() == (0, 1)
+    launch.check(1)
+
+
+@pytest.mark.parametrize("ranks", [2, 3])
+def test_ranks_add_up_their_numbers(ranks):
+    assert launch.fault(ranks) == ""
+
+
+def test_a_launcher_of_another_mpi_is_noticed(program, monkeypatch):
+    wrong = program('#!/bin/sh\nshift; n=$1; shift\nfor i in $(seq "$n"); do "$@"; done\n', "mpirun")
+    wrong.chmod(wrong.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setattr(launch, "launcher", lambda: str(wrong))
+    assert "another MPI" in launch.fault(2)
+
+
+def test_a_launcher_that_hangs_is_noticed(program, monkeypatch):
+    monkeypatch.setattr(launch, "command", lambda ranks, arguments: ["sleep", "30"])
+    assert launch.fault(2, timeout=0.2) == "sleep did not finish in 0.2 s"
+
+
+@pytest.mark.parametrize("code", [0, 2, 75])
+def test_exit_code_comes_back(code):
+    assert launch.mpirun(2, [sys.executable, "-c", f"raise SystemExit({code})"]) == code
+
+
+def test_usr1_reaches_the_ranks(program):
+    ranks = program(
+        "import signal, sys, time\n"
+        "signal.signal(signal.SIGUSR1, lambda *_: sys.exit(75))\n"
+        "print('ready', flush=True)\n"
+        "time.sleep(30)\n"
+    )
+    line = f"import sys; from parsim import launch; sys.exit(launch.mpirun(2, [sys.executable, {str(ranks)!r}]))"
+    with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
+        assert [job.stdout.readline() for _ in range(2)] == ["ready\n", "ready\n"]
+        job.send_signal(signal.SIGUSR1)
+        assert job.wait(20) == 75
+
+
+def test_the_terminal_that_open_mpi_gives_its_ranks_is_not_taken_for_one(mpirun, program):
+    ran = mpirun(2, program("from parsim import launch; print('columns', launch.terminal())"))
+    assert ran.stdout.split() == ["columns", "0"] * 2, ran.stderr
+
+
+def test_a_hanging_job_is_ended(mpirun, program):
+    script = program("import time; print('hangs', flush=True); time.sleep(60)")
+    began = time.monotonic()
+    with pytest.raises(pytest.fail.Exception, match="did not end in 3 s"):
+        mpirun(2, script, timeout=3)
+    assert time.monotonic() - began < 15
+    time.sleep(0.5)
+    alive = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True).stdout
+    assert str(script) not in alive
+
+
+FAILS = """
+import sys
+from parsim.__main__ import _exit_code
+from parsim.comm import Comm
+from parsim.errors import InputError
+
+def work():
+    comm = Comm()
+    if comm.rank == 1:
+        raise {error}("one rank fails")
+    comm.max([1.0])
+
+sys.exit(_exit_code(work))
+"""
+
+
+@pytest.mark.parametrize(("error", "code"), [("ValueError", 1), ("InputError", 2)])
+def test_one_failing_rank_ends_the_job(error, code, mpirun, program):
+    ran = mpirun(2, program(FAILS.format(error=error)), timeout=30)
+    assert ran.returncode == code, ran.stderr
+    assert error == "InputError" or "one rank fails" in ran.stderr
+
+
+def test_doctor_finds_this_machine_fit_and_says_what_is_wrong(monkeypatch, capsys):
+    assert doctor.main() == 0
+    assert "can run here" in capsys.readouterr().out
+    bad = doctor.Finding("MPI library", "none", "no [library]", "install it")
+    monkeypatch.setattr(doctor, "CHECKS", (lambda: bad,))
+    assert doctor.main() == 1
+    shown = capsys.readouterr().out
+    assert "no [library]" in shown and "install it" in shown
+
+
+def test_doctor_forgives_what_a_run_does_not_need(monkeypatch, capsys):
+    monkeypatch.setattr(
+        doctor, "CHECKS", (lambda: doctor.Finding("Pictures", "", "no OpenGL", "get it", needed=False),)
+    )
+    assert doctor.main() == 0
+    assert "no OpenGL" in capsys.readouterr().out

@@ -1,0 +1,216 @@
+"""The report of a made-up run: right numbers, whole page, pictures with and without VTK."""
+
+import base64
+import io
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+
+import fake_run
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import parsim
+from parsim.errors import InputError, WriteError
+from parsim.report import animation, budgets, measures, painter, pictures, plots, scene
+from parsim.report.build import build, moments
+from parsim.report.page import table
+
+VOID = {"meta", "img", "br"}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return parsim.open(fake_run.make(tmp_path_factory.mktemp("report") / "out", times=np.arange(-0.1, 1.25, 0.2)))
+
+
+class Checker(HTMLParser):
+    """Every tag closed in its turn; collects the sources and alternatives of pictures."""
+
+    def __init__(self, words):
+        super().__init__()
+        self.open, self.sources, self.alternatives = [], [], []
+        self.feed(words)
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in VOID:
+            self.open.append(tag)
+        attrs = dict(attrs)
+        if tag in ("img", "video"):
+            self.sources.append(attrs["src"])
+            self.alternatives.append(attrs.get("alt") or attrs.get("aria-label"))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def check_page(path, figures):
+    words = path.read_text(encoding="utf-8")
+    page = Checker(words)
+    assert not page.open and len(page.sources) == figures and all(page.alternatives)
+    assert not re.search(r"(src|href)=\"(?!data:)|https?://|url\(", words)
+    for source in page.sources:
+        if source.startswith("data:image/png"):
+            picture = imread(io.BytesIO(base64.b64decode(source.partition(",")[2])))
+            assert picture[..., :3].std() > 0.02
+    return words
+
+
+def test_the_page_is_whole_without_vtk(run, monkeypatch):
+    monkeypatch.setattr(pictures, "SNAPSHOT", pictures.Quality(300, 1))
+    monkeypatch.setattr(pictures, "ANIMATION", pictures.Quality(200, 1))
+    words = check_page(build(run.folder, vtk=False), figures=12)
+    for said in ("pictures by our own painter", "Four blocks released on a dry bed", "block B1 is 3 spacings thin",
+                 "front arrives at the end wall", "inside the experiments&#x27; spread", "spacing = 0.015",
+                 "The front reached the end wall at", "t = 0.300 s", "t = 1.100 s"):  # fmt: skip
+        assert said in words, said
+    assert {"index.html", "trajectories.png", "energy.png"} <= {path.name for path in run.folder.glob("report/*")}
+    assert list(run.folder.glob("report/animation.*"))[0].stat().st_size < 4e6
+
+
+def test_vtk_draws_or_the_painter_does(run):
+    wanted = {(3, view): pictures.Quality(240, 1) for view in scene.VIEWS}
+    gallery = pictures.Gallery(run, wanted)
+    if gallery.method != "pyvista":
+        pytest.skip("pyvista or a GL library is missing: drawn by " + gallery.method)
+    moment = scene.load(run, 3)
+    for view in scene.VIEWS.values():
+        drawn, painted = gallery.picture(moment, 3, view)[0], painter.paint(moment, view, 240)[0]
+        # the two must show the same things in the same places
+        same = (drawn[..., 3] > 0.5)[: len(painted)] == (painted[..., 3] > 0.5)[: len(drawn)]
+        assert same.mean() > 0.85, view.name
+
+
+@pytest.mark.parametrize("command", ["raise SystemExit(1)", "import os; os.abort()"])
+def test_a_crash_of_vtk_is_survived(run, monkeypatch, command):
+    real = subprocess.run
+
+    def crash(arguments, **options):
+        assert arguments[2] == "parsim.report.vtk_worker"
+        return real([sys.executable, "-c", command], **options)
+
+    monkeypatch.setattr(pictures.importlib.util, "find_spec", lambda name: True)
+    monkeypatch.setattr(pictures.subprocess, "run", crash)
+    gallery = pictures.Gallery(run, {(0, "front"): pictures.Quality(80, 1)})
+    assert gallery.method == "our own painter"
+    assert gallery.picture(scene.load(run, 0), 0, scene.FRONT)[0].shape[1:] == (80, 4)
+
+
+def test_the_painter_puts_things_where_they_are(run):
+    moment = scene.load(run, 0)
+    image, extent = painter.paint(moment, scene.FRONT, 700)
+
+    def pixel(x, z):
+        row = int((extent[3] - z) / (extent[3] - extent[2]) * len(image))
+        return image[row, int((x - extent[0]) / (extent[1] - extent[0]) * image.shape[1])]
+
+    water, block, air, gate = pixel(0.075, 0.06), pixel(0.02, 0.143), pixel(0.4, 0.2), pixel(0.1525, 0.25)
+    assert water[2] > water[0] + 0.2 and water[3] > 0.5
+    assert block[0] > block[2] + 0.2 and block[3] == 1
+    assert air[3] == 0
+    assert np.ptp(gate[:3]) < 0.1 and gate[3] > 0.3
+
+
+def test_the_gate_rises_at_its_speed():
+    case = {"gate": {"bottom": 0.01, "speed": 0.4, "opens": 0.1}, "box": {"min": [0, 0, 0]}}
+    assert [scene.gate_bottom(case, time) for time in (-1, 0.1, 0.6)] == [0.01, 0.01, pytest.approx(0.21)]
+    assert scene.gate_bottom({}, 0.0) is None
+
+
+def test_views_are_right_handed_and_keep_lengths():
+    for view in scene.VIEWS.values():
+        axes = np.array([view.right, view.up, view.away])
+        np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-14)
+        np.testing.assert_allclose(np.cross(view.right, view.up), -np.array(view.away), atol=1e-14)
+
+
+def test_measures_are_those_of_the_series(run):
+    tracks = measures.body_tracks(run)
+    assert list(tracks) == list(fake_run.NAMES)
+    assert measures.draught(run, "B1", tracks["B1"]) == pytest.approx(0.868 * 0.0195)
+    assert measures.archimedes_draught(run, "B1") == pytest.approx(0.868 * 0.0195)
+    assert measures.at_time(tracks["A2"], "x", 0.5) == pytest.approx(fake_run.poses(0.5)[0][1, 0], abs=1e-4)
+    assert measures.at_time(tracks["A2"], "x", 3.0) is None
+    assert measures.front_arrival(run) == pytest.approx((0.7 - 2 * 0.015 - 0.15) / 1.35, abs=0.02)
+    numbers = measures.published(run)
+    assert [(number.block, number.quantity) for number in numbers] == [
+        ("B1", "max X"), ("", "front arrives at the end wall"), ("A2", "X")]  # fmt: skip
+    assert numbers[2].model is None and numbers[0].model == 0.30
+
+
+def test_a_tilted_block_reaches_deeper(run):
+    track = {key: np.array([value]) for key, value in
+             {"time": 0.0, "x": 0.05, "y": 0.05, "z": 0.15, "q0": np.cos(np.pi / 8), "q1": 0.0, "q2": np.sin(np.pi / 8),
+              "q3": 0.0}.items()}  # fmt: skip
+    expected = (0.0725 + 0.0195) / 2 * np.sqrt(0.5)
+    assert measures.draught(run, "A1", track) == pytest.approx(expected)
+
+
+def test_energy_created_takes_work_off():
+    energy = {"time": [-1.0, 0.0, 1.0], "total": [9.0, 2.0, 3.0], "work_gate": [5.0, 1.0, 1.5]}
+    energy = {name: np.array(values) for name, values in energy.items()}
+    times, created = measures.energy_created(energy)
+    np.testing.assert_array_equal(created, [0.0, 0.25])
+    np.testing.assert_array_equal(times, [0.0, 1.0])
+
+
+def test_verdicts():
+    number = measures.Published("B1", "max X", 0.2, 0.25, None, "m", 1.2, "")
+    assert measures.verdict(0.22, number) == "inside the experiments' spread"
+    assert measures.verdict(0.3, number) == "0.05 m above (+20%)"
+    assert measures.verdict(0.1, number) == "0.1 m below (-50%)"
+    assert measures.verdict(None, number) == "not compared"
+
+
+def test_the_profile_leaves_splash_out():
+    position = np.array([[0.005, 0.0, 0.10], [0.006, 0.0, 0.02], [0.015, 0.0, 0.05], [0.02, 0.0, 0.07]])
+    water = {"position": position, "class": np.array([3, 2, 2, 0], np.uint8)}
+    middles, heights = plots.profile(water, 0.01, 0.0, 0.04)
+    np.testing.assert_allclose(middles, [0.005, 0.015, 0.025, 0.035])
+    np.testing.assert_allclose(heights, [0.025, 0.055, 0.075, np.nan])
+
+
+def test_moments_are_reached_ones():
+    times = np.arange(0, 1.01, 0.05)
+    assert moments(times, (0.4, 0.8, 1.2)) == [8, 16]
+    assert moments(times[:4], (0.4, 0.8)) == [1, 2, 3]
+    assert moments(np.zeros(0), (0.4,)) == []
+    assert animation.chosen(300)[-1] == 299 and len(animation.chosen(300)) == animation.MOST_FRAMES
+
+
+def test_a_two_dimensional_run_and_a_stopped_one(run, tmp_path):
+    fake_run.make(tmp_path / "plane", times=(0.0, 0.2, 0.4), spacing=0.03)
+    case = tmp_path / "plane/case.toml"
+    case.write_text(case.read_text().replace("dimensions = 3", "dimensions = 2"))
+    check_page(build(tmp_path / "plane"), figures=10)
+    (tmp_path / "stopped/series").mkdir(parents=True)
+    (tmp_path / "stopped/case.toml").write_text('title = "Stopped"\n')
+    (tmp_path / "stopped/series/energy.csv").write_text("# units: -, s, J\nstep,time,total\n")
+    assert "Status: unknown" in check_page(build(tmp_path / "stopped"), figures=0)
+
+
+def test_a_gif_replaces_a_missing_encoder(run, monkeypatch):
+    def missing(pictures, fps):
+        raise ImportError("no encoder")
+
+    monkeypatch.setattr(animation, "_mp4", missing)
+    gallery = pictures.Gallery(run, pictures.wanted(run, [], [0, 1]), vtk=False)
+    data, suffix = animation.animate(run, gallery, [0, 1])
+    assert suffix == "gif" and data[:4] == b"GIF8"
+
+
+def test_bad_folders_and_full_ones(tmp_path, run):
+    with pytest.raises(InputError, match="not an output folder"):
+        build(tmp_path)
+    (tmp_path / "case.toml").write_text('title = "x"\n')
+    (tmp_path / "report").write_text("")
+    with pytest.raises(WriteError):
+        build(tmp_path)
+
+
+def test_words_are_escaped_and_empty_tables_left_out(run):
+    assert table(("a",), []) == ""
+    assert "&lt;script&gt;" in table(("a", "b"), [("<script>", 1.0)])
+    assert budgets.phases(run) is not None

@@ -1,0 +1,65 @@
+"""The promise: the same bits on any number of ranks and threads and with any cuts."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import parsim
+from parsim.__main__ import main
+
+HERE = Path(__file__).parent
+CASES = {"3d": HERE / "same_bits.toml", "2d": HERE / "same_bits_2d.toml"}
+# moving the cuts after every rebuild, or never, puts them elsewhere on several ranks
+WAYS = {
+    "two ranks": (2, []),
+    "three ranks": (3, []),
+    "two ranks, cuts that move": (2, ["--set", "run.balance_every=1"]),
+    "two threads": (1, ["--threads", "2"]),
+}
+
+
+@pytest.fixture(scope="module")
+def one_rank(tmp_path_factory):
+    """The output of each case on one rank."""
+    folder = tmp_path_factory.mktemp("one")
+    for name, case in CASES.items():
+        # a process of its own, as for every run: see parsim/warm.py
+        subprocess.run([sys.executable, "-m", "parsim", "run", case, "-o", folder / name], check=True)
+    return folder
+
+
+def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cold"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    subprocess.run([sys.executable, "-m", "parsim", "run", CASES["3d"], "-o", tmp_path / "first"], check=True)
+    assert main(["compare", str(one_rank / "3d"), str(tmp_path / "first")]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_case_does_what_the_comparison_needs(one_rank, name):
+    run = parsim.open(one_rank / name)
+    energy, counts = run.series("energy"), run.series("counts")
+    assert run.info["steps"] > 40 and run.info["rebuilds"] > 4
+    assert energy["dissipated_contacts"][-1] > 1e-5, "nothing has touched"
+    assert max(counts["lost"]) == max(counts["in_bodies"]) == 0
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("name", CASES)
+def test_same_bits(one_rank, name, way, mpirun, tmp_path, capsys):
+    ranks, options = WAYS[way]
+    done = mpirun(ranks, ["run", CASES[name], "-o", tmp_path / "other", *options], timeout=240)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert main(["compare", str(one_rank / name), str(tmp_path / "other")]) == 0, capsys.readouterr().out
+
+
+def test_too_many_ranks_are_refused_with_the_number_that_fits(mpirun, tmp_path):
+    case = tmp_path / "narrow.toml"
+    case.write_text(CASES["2d"].read_text().replace("[0.6, 1.0, 0.3]", "[0.04, 1.0, 0.3]").split("[gate]")[0].replace(
+        "[0.3, 1.0, 0.15]", "[0.04, 1.0, 0.15]") + "[run]\nuntil = 1.0\n")
+    done = mpirun(5, ["run", case, "-o", tmp_path / "out"])
+    assert done.returncode == 2
+    assert "use at most" in done.stderr and done.stderr.count("error:") == 1
+    assert not (tmp_path / "out").exists()

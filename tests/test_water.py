@@ -1,0 +1,185 @@
+"""The water as a whole: at rest, in a periodic box, at a body, at the start, through a gate."""
+
+import math
+
+import numpy as np
+import pytest
+
+from parsim.case import parse
+from parsim.comm import Comm
+from parsim.setup import water
+from parsim.shapes import free_of_bodies, lattice, outside_box
+from parsim.solid.bodies import from_case
+from parsim.solver import Simulation
+from parsim.state import GATE_DOWN, GATE_UP
+
+TANK = {"dimensions": 2, "spacing": 0.01, "box": {"max": [0.2, 1.0, 0.2]}, "run": {"until": 1.0},
+        "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.1]}]},
+        "materials": {"wood": {"young": 1e9, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}}}
+SQUARE = {"name": "square", "shape": {"size": [0.06, 1.0, 0.06]}, "density": 1000.0, "material": "wood",
+          "position": [0.2, 0.5, 0.15]}
+POOL = TANK | {"box": {"max": [0.4, 1.0, 0.4]},
+               "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.3]}]}}
+PERIODIC = {"box": {"max": [0.2, 1.0, 0.2], "faces": {f"{a}_{s}": "periodic" for a in "xz" for s in ("min", "max")}},
+            "gravity": [0.0, 0.0, 0.0]}
+
+
+def simulation(data):
+    """A case as a nested dict, ready to step on one rank."""
+    case = parse(data)
+    return Simulation(case, Comm(case.box.faces.x_min == "periodic"))
+
+
+def bottom(s):
+    """Mean pressure of the lowest row over its hydrostatic value."""
+    p, at = s.domain.particles, s.near.fluid
+    low = at[p.z[at] < s.case.spacing]
+    return (p.p[low] / (9810.0 * (0.1 - p.z[low]))).mean()
+
+
+def test_water_at_rest_stays_at_rest():
+    s = simulation(TANK)
+    pressures, speeds = [], []
+    while s.time < 1.0:
+        s.step()
+        pressures.append(bottom(s))
+        speeds.append(s.speed)
+    p, at = s.domain.particles, s.near.fluid
+    assert np.mean(pressures[200:]) == pytest.approx(1.0, abs=0.02)
+    assert np.std(pressures[-500:]) < 0.01
+    assert 2 * p.z[at].mean() == pytest.approx(0.1, rel=0.01)
+    assert max(speeds) < 0.08 * s.case.speed
+    assert at.size == 200 and s.domain.lost == 0
+
+
+def test_settled_water_does_not_jump_at_the_start():
+    s = simulation(TANK)
+    s.step()
+    p, at = s.domain.particles, s.near.fluid
+    acceleration = np.hypot(p.u[at], p.w[at]) / s.dt
+    inner = p.surface[at] < 2
+    assert acceleration[inner].max() < 0.15 * 9.81, "a particle of unbalanced water would fall with g"
+    assert bottom(s) == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("shifting", [True, False])
+def test_momentum_stays_in_a_periodic_box(shifting):
+    fill = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.2], "velocity": [0.3, 0.0, -0.2]}]
+    s = simulation(TANK | PERIODIC | {"water": {"fill": fill, "speed": 1.0, "shifting": shifting}})
+    p, rng = s.domain.particles, np.random.default_rng(2)
+    kick = rng.normal(scale=0.2, size=(2, s.near.fluid.size))
+    p.u[s.near.fluid] += kick[0]
+    p.w[s.near.fluid] += kick[1]
+    s.domain.refresh("u", "w")
+    before = [math.fsum(f[s.near.fluid]) for f in (p.u, p.w)]
+    for _ in range(300):
+        s.step()
+    p = s.domain.particles
+    after = [math.fsum(f[s.near.fluid]) for f in (p.u, p.w)]
+    assert s.rebuilds > 20 and s.near.fluid.size == 400
+    assert after == pytest.approx(before, abs=1e-11)
+    assert not np.allclose(p.u[s.near.fluid], p.u[s.near.fluid][0])
+
+
+def decay_error(spacing, across):
+    """Relative error of the decay of u = sin(k x) along one of two directions that average a square lattice out."""
+    fill = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.2]}]
+    s = simulation(TANK | PERIODIC | {"spacing": spacing, "water": {"fill": fill, "speed": 0.1, "viscosity": 2e-3}})
+    k = 2 * math.pi / 0.2 * np.array([across, 1.0])
+    along = np.array([1.0, -across]) / math.hypot(1.0, across)
+    p = s.domain.particles
+    wave = np.sin(k[0] * p.x + k[1] * p.z)
+    p.u[:], p.w[:] = 0.001 * along[0] * wave, 0.001 * along[1] * wave
+    while s.time < 0.1:
+        s.step()
+    p, at = s.domain.particles, s.near.fluid
+    wave = np.sin(k[0] * p.x[at] + k[1] * p.z[at])
+    amplitude = 2 * ((p.u[at] * along[0] + p.w[at] * along[1]) * wave).mean() / 0.001
+    return math.log(amplitude) / (-2e-3 * (k**2).sum() * s.time) - 1
+
+
+def test_shear_waves_decay_by_their_viscosity():
+    """Exact: exp(-nu k^2 t). A lattice is stiffer along its diagonal by as much as it is softer along its axes."""
+    coarse, fine = ([decay_error(spacing, across) for across in (0.0, 1.0)] for spacing in (0.02, 0.01))
+    means = [abs(sum(errors) / 2) for errors in (coarse, fine)]
+    assert means[1] < 0.03 and means[0] / means[1] > 3, (coarse, fine)
+
+
+def test_a_body_in_water_at_rest_is_carried_by_what_it_displaces():
+    s = simulation(POOL | {"bodies": [SQUARE]})
+    loads = []
+    for _ in range(200):
+        s.step()
+        loads.append(s.bodies.water_load[0].copy())
+    mean = np.mean(loads, axis=0)
+    weight = 1000.0 * 0.06**2 * 9.81
+    assert mean[2] == pytest.approx(weight, rel=0.03)
+    assert abs(mean[0]) < 0.02 * weight and abs(mean[4]) < 0.02 * weight * 0.03
+
+
+def test_the_samples_of_a_body_carry_its_volume():
+    s = simulation(POOL | {"bodies": [SQUARE | {"shape": {"size": [0.064, 1.0, 0.057]}, "angles": [0.0, 30.0, 0.0]}]})
+    samples = s.models.samples
+    assert samples.scale.sum() * s.scheme.lattice.volume == pytest.approx(0.064 * 0.057, rel=1e-12)
+    p = s.domain.particles
+    at = np.flatnonzero(p.body == 0)
+    distance = np.hypot(p.x[at] - 0.2, p.z[at] - 0.15)
+    assert distance.max() < 0.5 * math.hypot(0.064, 0.057)
+
+
+def test_outside_box_is_the_distance_to_the_surface():
+    points = np.array([[2.0, 0, 0], [0.5, 0, 0], [2.0, 3.0, 0], [0, 0, -1.5]])
+    distance, direction = outside_box(points, np.zeros(3), np.eye(3), np.array([1.0, 2.0, 3.0]), (0, 1, 2))
+    assert distance == pytest.approx([1.0, -0.5, math.sqrt(2), -1.0])
+    assert direction[2] == pytest.approx([math.sqrt(0.5), math.sqrt(0.5), 0])
+
+
+@pytest.mark.parametrize("height", [0.15, 0.153, 0.1567])
+def test_the_fill_leaves_out_the_volume_of_the_bodies_wherever_they_are(height):
+    case = parse(POOL | {"bodies": [SQUARE | {"position": [0.2034, 0.5, height]}]})
+    points = lattice((0.0, 0.0, 0.0), (0.4, 1.0, 0.3), 0.01, (0, 2))
+    stays = free_of_bodies(points, [0.01] * 3, case, from_case(case))
+    assert (~stays).sum() == pytest.approx(36, abs=1)
+    gone = points[~stays]
+    assert np.abs(gone - [0.2034, 0.5, height]).max() < 0.04
+
+
+def test_gaps_narrower_than_the_spacing_hold_no_water():
+    blocks = [SQUARE | {"name": f"b{k}", "position": [x, 0.5, 0.15]} for k, x in enumerate((0.1, 0.164))]
+    case = parse(POOL | {"bodies": blocks})
+    s = simulation(POOL | {"bodies": blocks})
+    fluid = water(case, s.bodies, s.scheme)
+    assert not ((np.abs(fluid.x - 0.132) < 0.002) & (np.abs(fluid.z - 0.15) < 0.025)).any()
+    expected = 40 * 30 - (2 * 36 + 0.4 * 6)
+    assert len(fluid) == pytest.approx(expected, abs=1.5)
+
+
+def gated(opens):
+    fill = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.2]}, {"min": [0.21, 0.0, 0.0], "max": [0.4, 1.0, 0.05]}]
+    return simulation(POOL | {"water": {"fill": fill},
+                              "gate": {"min_x": 0.2, "max_x": 0.21, "speed": 1.0, "opens": opens}})
+
+
+def test_the_waters_beside_a_closed_gate_never_meet():
+    s = gated(opens=10.0)
+    for _ in range(150):
+        s.step()
+        p, near = s.domain.particles, s.near
+        for i in near.fluid:
+            side = p.x[i] < 0.205
+            row = near.index[near.start[i] : near.end[i]].astype(int)
+            fluid = row[: near.middle[i] - near.start[i]]
+            assert ((p.x[fluid] < 0.205) == side).all()
+            assert not (p.kind[row] == (GATE_DOWN if side else GATE_UP)).any()
+    low = near.fluid[(p.z[near.fluid] < 0.01) & (p.x[near.fluid] > 0.22)]
+    assert p.p[low].mean() == pytest.approx(9810 * 0.045, rel=0.05), "the shallow side feels nothing of the deep one"
+
+
+def test_water_passes_under_a_gate_that_has_risen_and_not_through_it():
+    s = gated(opens=0.0)
+    while s.time < 0.1:
+        s.step()
+    p, at = s.domain.particles, s.near.fluid
+    inside = (p.x[at] > 0.2025) & (p.x[at] < 0.2075) & (p.z[at] > s.gate.bottom(s.time) + 0.0025)
+    assert not inside.any()
+    assert (p.x[at] > 0.21).sum() >= 19 * 5 + 12, "water has come through below the edge"
