@@ -4,8 +4,9 @@
 `rows` runs a `prange` over particles; inside one particle's neighbour loop the sum may be reordered for SIMD,
 which depends on nothing but that particle's own list.
 
-Numba does not notice that a kernel's imported helper has changed: the cache folder carries a hash of all kernel
-sources, so that an edited or upgraded parsim never runs stale machine code.
+Numba does not notice that a kernel's imported helper has changed, and forgets what it cached once a source file has
+another path or date: the cache folder carries a hash of all that, so that an edited or upgraded parsim never runs stale
+machine code, and a folder whose kernels were all compiled stays complete.
 """
 
 import hashlib
@@ -19,7 +20,7 @@ def _source_hash():
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         text = path.read_bytes()
         if b"parsim.jit" in text or path.name == "jit.py":
-            digest.update(text)
+            digest.update(f"{path.absolute()} {path.stat().st_mtime_ns}".encode() + text)
     return digest.hexdigest()[:16]
 
 

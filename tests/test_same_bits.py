@@ -1,5 +1,6 @@
 """The promise: the same bits on any number of ranks and threads and with any cuts."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import parsim
+from parsim import jit
 from parsim.__main__ import main
 
 HERE = Path(__file__).parent
@@ -35,6 +37,16 @@ def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monk
     monkeypatch.delenv("NUMBA_CACHE_DIR")
     subprocess.run([sys.executable, "-m", "parsim", "run", CASES["3d"], "-o", tmp_path / "first"], check=True)
     assert main(["compare", str(one_rank / "3d"), str(tmp_path / "first")]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.parametrize("change", [lambda path: os.utime(path, (1, 1)), lambda path: path.write_text("parsim.jit 2")])
+def test_changed_sources_get_a_cache_of_their_own(change, tmp_path, monkeypatch):
+    (tmp_path / "kernels.py").write_text("import parsim.jit")
+    monkeypatch.setattr(jit, "__file__", str(tmp_path / "jit.py"))
+    before = jit.variant()
+    assert jit.variant() == before
+    change(tmp_path / "kernels.py")
+    assert jit.variant() != before
 
 
 @pytest.mark.parametrize("name", CASES)
