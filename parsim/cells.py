@@ -88,6 +88,16 @@ def occupied(x, y, z, origin, edge, count, first_layer, layers):
 
 
 @kernel
+def holding(value, field, first):
+    """Which cells hold a particle whose `field` is `value`: uint8 (cells,)."""
+    out = np.zeros(first.size - 1, np.uint8)
+    for c in range(out.size):
+        for i in range(first[c], first[c + 1]):
+            out[c] |= np.uint8(field[i] == value)
+    return out
+
+
+@kernel
 def spread(marks, reach):
     """Marks (a, b, c) uint8 grown by `reach` cells along each axis in turn."""
     grown = marks

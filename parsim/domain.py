@@ -8,7 +8,7 @@ neighbours in the same order on any number of ranks.
 import numpy as np
 
 from parsim import exact
-from parsim.cells import REACH, occupied, sort_by_cell, spread
+from parsim.cells import REACH, holding, occupied, sort_by_cell, spread
 from parsim.jit import kernel
 from parsim.state import POSITION, Particles
 
@@ -78,6 +78,12 @@ class Domain:
             if name == "x":
                 field[: self.own.start] += self._period_left
                 field[self.own.stop :] += self._period_right
+
+    def near(self, value, name):
+        """Which particles may have a neighbour whose field `name` is `value`, by cells: bool (particles,)."""
+        marks = holding(value, getattr(self.particles, name), self.first)
+        marks = spread(marks.reshape(-1, *self.grid.count[1:]), REACH).ravel()
+        return np.repeat(marks.view(bool), np.diff(self.first))
 
     def sum(self, values, index=None, count=1):
         """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,)."""

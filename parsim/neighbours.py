@@ -9,7 +9,7 @@ import numpy as np
 
 from parsim.cells import REACH
 from parsim.jit import kernel, prange, rows
-from parsim.state import FLUID, GATE_DOWN, GATE_UP, WALL
+from parsim.state import BODY, FLUID, GATE_DOWN, GATE_UP, WALL
 
 _CELLS_PER_TASK = 64
 
@@ -54,12 +54,14 @@ class Neighbours:
 
     def cut_by_gate(self, particles, radius, gate, time):
         """Take out the pairs that the gate hides from each other at `time`, s."""
-        p = particles
+        p, barrier = particles, gate.barrier(time)
+        if barrier > p.z[self.fluid].max(initial=-np.inf) + radius:
+            return
         near = np.sort(np.concatenate([self.fluid, self.boundary]))
         # each side's samples reach up to a support, less than `radius`, beyond the other face
         near = near[(p.x[near] > gate.min_x - 2.5 * radius) & (p.x[near] < gate.max_x + 2.5 * radius)]
-        cut_rows(near, p.x, p.z, p.kind, gate.min_x, gate.max_x, gate.barrier(time), self.start, self.middle,
-                 self.end, self.index)
+        cut_rows(near, p.x, p.z, p.kind, gate.min_x, gate.max_x, barrier, self.start, self.middle, self.end,
+                 self.index)
         self.boundary = self.boundary[self.end[self.boundary] > self.start[self.boundary]]
         self.body = self.body[self.end[self.body] > self.start[self.body]]
 
@@ -162,6 +164,8 @@ def hidden(xa, za, xb, zb, low, high, barrier):
     """Whether the segment a-b meets the plate low <= x <= high at z >= barrier; low = high for its middle plane."""
     if min(xa, xb) > high or max(xa, xb) < low:
         return False
+    if barrier == -np.inf:
+        return True
     top = -np.inf
     for x in (low, high):
         if min(xa, xb) <= x <= max(xa, xb) and xa != xb:
@@ -192,34 +196,45 @@ def sees_gate(xf, zf, xg, zg, kind, low, high, barrier):
 
 
 @kernel
-def visible(i, j, x, z, kind, low, high, barrier):
-    """Whether the gate leaves particles i and j, one of them fluid, in sight of each other.
+def visible(i, j, other, x, z, low, high, barrier):
+    """Whether the gate leaves particles i and j, one of them fluid and `other` the kind of the other, in sight.
 
     Water and bodies are hidden from each other where the middle plane of the plate lies between them: around its edge
     they are one water, and hiding what is behind the corner would leave holes in the support that look like a free
     surface. Walls are hidden by the whole plate, whose own samples stand there.
     """
-    if kind[i] == GATE_UP or kind[i] == GATE_DOWN:
-        return sees_gate(x[j], z[j], x[i], z[i], kind[i], low, high, barrier)
-    if kind[j] == GATE_UP or kind[j] == GATE_DOWN:
-        return sees_gate(x[i], z[i], x[j], z[j], kind[j], low, high, barrier)
-    if kind[i] == WALL or kind[j] == WALL:
+    if other == WALL:
         return not hidden(x[i], z[i], x[j], z[j], low, high, barrier)
+    if other == GATE_UP or other == GATE_DOWN:
+        return sees_gate(x[i], z[i], x[j], z[j], other, low, high, barrier)
     middle = 0.5 * (low + high)
     return not hidden(x[i], z[i], x[j], z[j], middle, middle, barrier)
 
 
 @kernel
 def cut_rows(near, x, z, kind, low, high, barrier, start, middle, end, index):
-    """Compact the rows `near` in place, keeping only neighbours that the gate leaves in sight."""
+    """Compact the rows `near` in place, keeping only neighbours that the gate leaves in sight.
+
+    Nearly all pairs are settled by lying on one side of the plate.
+    """
+    between = 0.5 * (low + high)
     for i in near:
         m = start[i]
-        for t in range(start[i], middle[i]):
-            index[m] = index[t]
-            m += visible(i, index[t], x, z, kind, low, high, barrier)
+        own = kind[i]
+        if own == FLUID or own == BODY:
+            for t in range(start[i], middle[i]):
+                j = index[t]
+                index[m] = j
+                m += (x[i] - between) * (x[j] - between) > 0.0 or visible(i, j, BODY, x, z, low, high, barrier)
+        else:
+            for t in range(start[i], middle[i]):
+                j = index[t]
+                index[m] = j
+                m += visible(j, i, own, x, z, low, high, barrier)
         kept = m
         for t in range(middle[i], end[i]):
-            index[m] = index[t]
-            m += visible(i, index[t], x, z, kind, low, high, barrier)
+            j = index[t]
+            index[m] = j
+            m += visible(i, j, kind[j], x, z, low, high, barrier)
         middle[i] = kept
         end[i] = m

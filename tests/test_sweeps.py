@@ -221,8 +221,8 @@ def test_shifting_never_moves_water_out_through_the_surface(slab):
     domain, near, scheme = slab
     p = domain.particles
     p.ax[:], p.ay[:], p.az[:] = 0.3, 0.0, -1.0  # a concentration that falls upward, as at any free surface
-    surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, scheme.radius,
-                  0.21**2, 0.004, 0.01, p.ax, p.ay, p.az, p.surface)
+    surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+                  domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, p.ax, p.ay, p.az, p.surface)
     at, z = near.fluid, p.z[near.fluid]
     assert p.az[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(0.0, abs=1e-12)
     assert p.ax[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(-0.0012)
@@ -232,12 +232,22 @@ def test_shifting_never_moves_water_out_through_the_surface(slab):
     assert (p.ax[at[z > 1.0]] == 0.0).all() and (p.az[at[z > 1.0]] == 0.0).all()
 
 
+def test_the_cells_near_the_surface_hold_all_that_list_a_surface_particle(slab):
+    domain, near, _ = slab
+    p = domain.particles
+    p.surface[p.x > p.x.mean()] = INTERNAL
+    expected = [(p.surface[near.index[near.start[i] : near.middle[i]]] == SURFACE).any() for i in near.fluid]
+    flagged = domain.near(SURFACE, "surface")[near.fluid]
+    assert flagged[expected].all() and any(expected)
+    assert not domain.near(77, "surface").any()
+
+
 def test_shifts_are_cut_to_their_longest(slab):
     domain, near, scheme = slab
     p = domain.particles
     p.ax[:], p.ay[:], p.az[:] = 30.0, 40.0, 0.0
-    surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, scheme.radius,
-                  0.21**2, 0.004, 0.01, p.ax, p.ay, p.az, p.surface)
+    surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+                  domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, p.ax, p.ay, p.az, p.surface)
     moved = np.sqrt(p.ax**2 + p.ay**2 + p.az**2)[near.fluid]
     assert moved.max() == pytest.approx(0.01) and (p.kind[near.fluid] == FLUID).all()
 

@@ -43,11 +43,12 @@ def classify(at, start, end, index, x, y, z, c, spacing, lowest, highest, surfac
 
 
 @rows
-def shift(at, start, middle, index, x, y, z, nx, ny, nz, radius, near2, factor, longest, ax, ay, az, surface):
+def shift(at, start, middle, index, x, y, z, nx, ny, nz, near, radius, near2, factor, longest, ax, ay, az, surface):
     """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
 
     Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
-    it; detached ones stay. Marks the vicinity.
+    it; detached ones stay. Marks the vicinity. Only where `near` (particles,) is true can a surface particle be listed;
+    without it this scan for them took a fifth of a step.
     """
     for row in prange(at.size):
         i = at[row]
@@ -56,7 +57,7 @@ def shift(at, start, middle, index, x, y, z, nx, ny, nz, radius, near2, factor, 
             continue
         mx, my, mz = nx[i], ny[i], nz[i]
         sx, sy, sz = -factor * ax[i], -factor * ay[i], -factor * az[i]
-        if surface[i] == INTERNAL:
+        if near[i] and surface[i] == INTERNAL:
             for t in range(np.uint64(start[i]), np.uint64(middle[i])):
                 j = index[t]
                 if surface[j] == SURFACE:

@@ -10,6 +10,7 @@ import numpy as np
 
 from parsim.fluid import kernels, surface
 from parsim.fluid.weights import Lattice
+from parsim.state import SURFACE
 
 _LOWEST, _HIGHEST = 0.4, 0.9  # concentrations below which a particle is detached, above which never at the surface
 _VICINITY = 2.1  # in spacings
@@ -87,16 +88,16 @@ class WCMPS:
                            p.ax, p.ay, p.az)
         kernels.grow(p.kind[domain.own], p.rate[domain.own], 0.5 * dt, p.n[domain.own])
         if self.shifting:
-            self._shift(p, near, speed)
+            self._shift(domain, near, speed)
         domain.refresh("x", "y", "z", "n", "rate")
 
-    def _shift(self, p, near, speed):
-        lattice = self.lattice
+    def _shift(self, domain, near, speed):
+        p, lattice = domain.particles, self.lattice
         mach = min(speed / self.sound, _LARGEST_MACH)
         factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
-        surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, lattice.radius,
-                      (_VICINITY * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, p.ax, p.ay, p.az,
-                      p.surface)
+        surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+                      domain.near(SURFACE, "surface"), lattice.radius, (_VICINITY * lattice.spacing) ** 2, factor,
+                      _LONGEST_SHIFT * lattice.spacing, p.ax, p.ay, p.az, p.surface)
         kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
