@@ -221,8 +221,9 @@ def test_shifting_never_moves_water_out_through_the_surface(slab):
     domain, near, scheme = slab
     p = domain.particles
     p.ax[:], p.ay[:], p.az[:] = 0.3, 0.0, -1.0  # a concentration that falls upward, as at any free surface
-    surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
-                  domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, p.ax, p.ay, p.az, p.surface)
+    surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+                  p.c, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number, 0.1, p.ax,
+                  p.ay, p.az, p.surface, p.n)
     at, z = near.fluid, p.z[near.fluid]
     assert p.az[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(0.0, abs=1e-12)
     assert p.ax[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(-0.0012)
@@ -230,6 +231,26 @@ def test_shifting_never_moves_water_out_through_the_surface(slab):
     assert p.az[at[np.abs(z - 0.45) < 0.01]] == pytest.approx(0.0, abs=1e-12)
     assert p.az[at[np.abs(z - 0.15) < 0.01]] == pytest.approx(0.004), "away from a surface is allowed"
     assert (p.ax[at[z > 1.0]] == 0.0).all() and (p.az[at[z > 1.0]] == 0.0).all()
+
+
+def shifted_density(domain, near, scheme, pull):
+    """Number density of the fluid after a shift with the recovery `pull`, from 1.01 times that of the lattice."""
+    p = domain.particles
+    p.n[:], p.ax[:], p.ay[:], p.az[:] = 1.01 * scheme.number, 0.0, 0.0, 0.0
+    surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+                  p.c, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number, pull, p.ax,
+                  p.ay, p.az, p.surface, p.n)
+    return p.n[near.fluid] / scheme.number
+
+
+def test_density_goes_back_to_that_of_the_arrangement_where_no_surface_is_near(slab):
+    assert shifted_density(*slab, 0.1) == pytest.approx(1.01), "every particle of the slab sees a surface"
+    every, size = lattice((8, 8, 8), 0.1)
+    domain, near = listed(every, size, 0.31, (True, True, True))
+    scheme = Lattice(3, 0.1, 3.1)
+    domain.particles.n[:] = scheme.number
+    domain.particles.c[:] = sweep(domain.particles, near, scheme)
+    assert shifted_density(domain, near, scheme, 0.1) == pytest.approx(1.009, abs=1e-12)
 
 
 def test_the_cells_near_the_surface_hold_all_that_list_a_surface_particle(slab):
@@ -246,8 +267,9 @@ def test_shifts_are_cut_to_their_longest(slab):
     domain, near, scheme = slab
     p = domain.particles
     p.ax[:], p.ay[:], p.az[:] = 30.0, 40.0, 0.0
-    surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
-                  domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, p.ax, p.ay, p.az, p.surface)
+    surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+                  p.c, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number, 0.1, p.ax,
+                  p.ay, p.az, p.surface, p.n)
     moved = np.sqrt(p.ax**2 + p.ay**2 + p.az**2)[near.fluid]
     assert moved.max() == pytest.approx(0.01) and (p.kind[near.fluid] == FLUID).all()
 

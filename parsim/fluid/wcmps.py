@@ -29,6 +29,7 @@ class WCMPS:
         self.viscosity = max(water.viscosity, water.damping_viscosity * self.sound * case.spacing)
         self.mass = water.density * self.lattice.volume
         self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
+        self.recovery = water.recovery * case.speed / case.depth if case.depth else 0.0
         self.restitution = water.restitution
         self.close2 = (water.collision_distance * case.spacing) ** 2
 
@@ -88,16 +89,17 @@ class WCMPS:
                            p.ax, p.ay, p.az)
         kernels.grow(p.kind[domain.own], p.rate[domain.own], 0.5 * dt, p.n[domain.own])
         if self.shifting:
-            self._shift(domain, near, speed)
+            self._shift(domain, near, dt, speed)
         domain.refresh("x", "y", "z", "n", "rate")
 
-    def _shift(self, domain, near, speed):
+    def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
         mach = min(speed / self.sound, _LARGEST_MACH)
         factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
-        surface.shift(near.fluid, near.start, near.middle, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
+        surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
                       domain.near(SURFACE, "surface"), lattice.radius, (_VICINITY * lattice.spacing) ** 2, factor,
-                      _LONGEST_SHIFT * lattice.spacing, p.ax, p.ay, p.az, p.surface)
+                      _LONGEST_SHIFT * lattice.spacing, lattice.number, self.recovery * dt, p.ax, p.ay, p.az,
+                      p.surface, p.n)
         kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
