@@ -68,7 +68,3 @@ class Comm:
             block = np.empty(self._mpi.recv(source=source, tag=3), array.dtype)
             self._mpi.Recv(block, source, tag=4)
             yield block
-
-    def gather(self, item):
-        """List of every rank's picklable item on rank 0, None elsewhere."""
-        return self._mpi.gather(item)

@@ -8,12 +8,14 @@ from parsim.jit import kernel
 from parsim.solid.rotation import matrices
 from parsim.state import BODY, Particles, make_id
 
+_WAY_OUT = 0.01  # s that a particle inside a body takes to come out
+
 
 class BodySamples:
     """Even samplings of all bodies at about the spacing, down to a support below their surface.
 
     Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
-    the pose, never integrated.
+    the pose, never integrated. `here` (samples,): which lay in this slab when it was last asked for.
     """
 
     def __init__(self, case, bodies, layers):
@@ -50,7 +52,9 @@ class BodySamples:
         x, y, z = (np.empty(len(self)) for _ in range(3))
         turn = matrices(self.bodies.quaternion)
         locate(self.offsets, self.body, self.bodies.position, turn, x, y, z)
-        at = np.flatnonzero(slab.awake(slab.cells(x, y, z)))
+        cells = slab.cells(x, y, z)
+        self.here = cells >= 0
+        at = np.flatnonzero(slab.awake(cells))
         return Particles(at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x[at], y=y[at],
                          z=z[at], scale=self.scale[at])
 
@@ -63,12 +67,32 @@ class BodySamples:
         place_samples(p.kind, p.body, p.sample, self.offsets, position, matrices(quaternion), b.velocity, b.spin,
                       b.acceleration, b.angular_acceleration, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az)
 
-    def loads(self, domain, near, force, centre):
-        """Exact force and torque about `centre` (bodies, 3) on each body (bodies, 6), N and N m, over all ranks."""
+    def loads(self, domain, near, force, centre, films, rows):
+        """Exact force and torque about `centre` (bodies, 3) on each body, N and N m, over all ranks: (bodies, 6).
+
+        With those of `films` (n, 6), at `rows` (n,): rows beyond the bodies are summed too and returned as a second
+        array (bodies, 6).
+        """
         p, at = domain.particles, near.body
         each = np.empty((at.size, 6))
         levers(at, p.body, p.x, p.y, p.z, centre, force, each)
-        return domain.sum(each, p.body[at], len(centre))
+        rows = np.concatenate([p.body[at].astype(np.int64), rows])
+        return np.split(domain.sum(np.concatenate([each, films]), rows, 2 * len(centre)), 2)
+
+
+    def find(self, domain, near):
+        """Note, after a rebuild, which of this rank's water may meet a body."""
+        self._beside = near.fluid[domain.near(BODY, "kind")[near.fluid]]
+
+    def keep_out(self, p, near, position, quaternion):
+        """Turn the velocity of water that is inside a body at the given pose, so that it comes out again.
+
+        Water one layer thick has no pressure, so it can sink into what it lies on. The impulse is not given back: these
+        are single particles.
+        """
+        b = self.bodies
+        expel(self._beside, near.middle, near.end, near.index, p.body, p.x, p.y, p.z, position, matrices(quaternion),
+              b.half, b.velocity, b.spin, p.u, p.v, p.w)
 
 
 @kernel
@@ -102,6 +126,34 @@ def place_samples(kind, body, sample, offsets, position, turn, velocity, spin, a
         ax[i] = acceleration[b, 0] + (f * dz - g * dy) + (q * dw - r * dv)
         ay[i] = acceleration[b, 1] + (g * dx - e * dz) + (r * du - p * dw)
         az[i] = acceleration[b, 2] + (e * dy - f * dx) + (p * dv - q * du)
+
+
+@kernel
+def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity, spin, u, v, w):
+    """Velocity of fluid particles inside a body: outward through the nearest face, at least its depth in `_WAY_OUT`."""
+    for i in at:
+        last = -1
+        for s in range(middle[i], end[i]):
+            b = body[index[s]]
+            if b < 0 or b == last:
+                continue
+            last = b
+            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
+            depth, axis, sign = np.inf, 0, 1.0
+            for a in range(3):
+                along = turn[b, 0, a] * dx + turn[b, 1, a] * dy + turn[b, 2, a] * dz
+                if half[b, a] - abs(along) < depth:
+                    depth, axis, sign = half[b, a] - abs(along), a, 1.0 if along > 0.0 else -1.0
+            if depth <= 0.0:
+                continue
+            nx, ny, nz = sign * turn[b, 0, axis], sign * turn[b, 1, axis], sign * turn[b, 2, axis]
+            p, q, r = spin[b]
+            away = ((u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny
+                    + (w[i] - velocity[b, 2] - (p * dy - q * dx)) * nz)
+            more = max(depth / _WAY_OUT - away, 0.0)
+            u[i] += more * nx
+            v[i] += more * ny
+            w[i] += more * nz
 
 
 @kernel

@@ -55,7 +55,7 @@ class Neighbours:
     def cut_by_gate(self, particles, radius, gate, time):
         """Take out the pairs that the gate hides from each other at `time`, s."""
         p, barrier = particles, gate.barrier(time)
-        if barrier > p.z[self.fluid].max(initial=-np.inf) + radius:
+        if barrier > p.z[p.kind == FLUID].max(initial=-np.inf) + radius:  # of the halo too: walls look into it
             return
         near = np.sort(np.concatenate([self.fluid, self.boundary]))
         # each side's samples reach up to a support, less than `radius`, beyond the other face

@@ -10,6 +10,7 @@ from parsim.cells import REACH, Grid
 from parsim.coupling import BodySamples
 from parsim.domain import Domain
 from parsim.errors import InputError
+from parsim.films import Films
 from parsim.fluid.wcmps import WCMPS
 from parsim.neighbours import Neighbours
 from parsim.shapes import free_of_bodies, lattice
@@ -39,7 +40,7 @@ def _reach(case):
 
 
 class Models:
-    """The models of one case, as attributes: scheme, bodies, contacts, gate, samples, domain, near."""
+    """The models of one case, as attributes: scheme, bodies, contacts, gate, samples, films, domain, near."""
 
     def __init__(self, case, comm):
         layers, self.reach = _layers(case), _reach(case)
@@ -47,6 +48,7 @@ class Models:
         self.bodies = from_case(case)
         self.contacts = Contacts(self.bodies, case)
         self.samples = BodySamples(case, self.bodies, layers)
+        self.films = Films(case, self.bodies, self.samples, self.scheme.lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
         self.gate_samples = GateSamples(case, self.gate, layers) if self.gate else None

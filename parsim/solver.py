@@ -68,13 +68,19 @@ class Simulation:
     def _load(self, dt):
         if not len(self.bodies.mass):
             return None
-        centre, _ = self.bodies.drifted(0.5 * dt)
-        force = self.scheme.react(self.domain, self.near, dt)
-        return self.models.samples.loads(self.domain, self.near, force, centre)
+        centre, quaternion = self.bodies.drifted(0.5 * dt)
+        force, films = self.scheme.react(self.domain, self.near, dt), self.models.films
+        plate = self.gate.place(self.time + 0.5 * dt) if self.gate else np.zeros(4)
+        rows = films.rows(self.domain, self.near, plate, centre, quaternion)
+        load, films.pressure = self.models.samples.loads(self.domain, self.near, force, centre, *rows)
+        return load
 
     def _move(self, load, dt, keep):
         with self.timers("move"):
-            self.scheme.move(self.domain, self.near, dt, keep)
+            self.scheme.kick(self.domain.particles, self.near, dt, keep)
+            if load is not None:
+                self.models.samples.keep_out(self.domain.particles, self.near, *self.bodies.drifted(0.5 * dt))
+            self.scheme.drift(self.domain, dt)
         with self.timers("contacts"):
             if load is not None:
                 self.contacts.step(self.bodies, load, self.time, dt)
@@ -107,6 +113,9 @@ class Simulation:
             if self.gate:
                 near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
                 self._closed = self.gate.closed(self.time)
+        if len(self.bodies.mass):
+            self.models.samples.find(domain, near)
+            self.models.films.find(domain)
         with self.timers("sums"):
             self.active, self.fluid_count = domain.count(near.fluid.size + near.boundary.size, near.fluid.size)
         p, at = domain.particles, near.fluid

@@ -54,9 +54,12 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, near, radius, n
     Shifting moves particles but not the evolved n: unseen, water at rest would swell by 0.05 % a second in 2D and by
     0.1 % in 3D. So n goes back to the kernel sum, by the share `pull`, wherever no surface or wall is in the support:
     beside a wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40.
+    At the surface, where the pressure is zero, n is that of zero pressure: a drop must not come back with another.
     """
     for row in prange(at.size):
         i = at[row]
+        if surface[i] >= SURFACE:
+            n[i] = n0
         if surface[i] == DETACHED:
             ax[i] = ay[i] = az[i] = 0.0
             continue

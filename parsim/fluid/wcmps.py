@@ -1,7 +1,7 @@
 """Weakly compressible MPS (Mellado 2021, ch. 5; Jandaghian & Shakibaeinia 2020), explicit, symplectic in time.
 
 One momentum and one continuity sweep a step. A step is three calls, between which the bodies move: `predict` to the
-half step, `accelerate` there, `finish` at the full step.
+half step, `accelerate` there, `kick` and `drift` from there, `finish` at the full step.
 """
 
 import math
@@ -72,10 +72,13 @@ class WCMPS:
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
         return [math.sqrt(e) for e in kernels.extremes(near.fluid, p.u, p.v, p.w, p.x, p.y, p.z, start)]
 
-    def move(self, domain, near, dt, keep):
-        """Velocities to the full step, then positions; `keep` is the share of velocity kept (1 but when settling)."""
-        p = domain.particles
+    def kick(self, p, near, dt, keep):
+        """Velocities to the full step; `keep` is the share of velocity kept (1 but when settling)."""
         kernels.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
+
+    def drift(self, domain, dt):
+        """Positions from the half to the full step."""
+        p = domain.particles
         domain.refresh("u", "v", "w", "c", "nx", "ny", "nz", "surface")
         kernels.drift(p.kind, p.u, p.v, p.w, 0.5 * dt, p.x, p.y, p.z)
 

@@ -1,0 +1,229 @@
+"""Films of water in gaps too thin for a particle: what keeps a grounded floe afloat and touching floes apart.
+
+A gap thinner than the spacing holds no particle, so a face that looks into it would feel no water at all: a floe on the
+bed would be pressed onto it, two floes together, by the full pressure on their other sides. In nature water stands in
+such gaps, at the pressure of the water around them. Here every face is cut into patches, one per sample of its outer
+layer. The pressure in a film is that of the water along the rim of the face, averaged, dry rim counting as zero, and
+hydrostatic within the face; a patch feels it as far as a solid lies close in front of it and no particle does.
+"""
+
+import itertools
+import math
+
+import numpy as np
+
+from parsim.jit import kernel
+from parsim.solid.rotation import matrices
+from parsim.state import BODY
+
+_NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
+_FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
+
+
+class Films:
+    """The patches of all bodies, and the mean pressure along the rim of each face, Pa: `pressure` (bodies, 6).
+
+    Faces are numbered 2 axis + (0 low, 1 high) in the body frame.
+    """
+
+    def __init__(self, case, bodies, samples, lattice):
+        self.bodies, self.samples = bodies, samples
+        self.pressure = np.zeros((len(bodies), 6))
+        self._spacing, self._radius = case.spacing, lattice.radius
+        self._head = case.water.density * np.array(case.gravity)
+        self._layer, self._deep = _layers(case)
+        self._planes = _planes(case)
+        self._period = case.box.size[0] if case.box.faces.x_min == "periodic" else math.inf
+        self._axes = [a for a in case.axes]
+        self._patches()
+
+    def _patches(self):
+        """One patch per sample of an outer layer and face it belongs to."""
+        s, half = self.samples, self.bodies.half[self.samples.body]
+        count = np.ones_like(half)
+        for a in self._axes:
+            count[:, a] = np.maximum(np.rint(2.0 * half[:, a] / self._spacing), 1.0)
+        parts, outer = [], {}
+        for a, sign in itertools.product(self._axes, (-1, 1)):
+            outer[a, sign] = np.abs(sign * s.offsets[:, a] / half[:, a] - (1.0 - 1.0 / count[:, a])) < 1e-9
+        for a, sign in outer:
+            at = np.flatnonzero(outer[a, sign])
+            rim = np.zeros(at.size, bool)
+            for (b, _), layer in outer.items():
+                rim |= layer[at] & (b != a)
+            place = s.offsets[at].copy()
+            place[:, a] = sign * half[at, a]
+            area = np.prod([2.0 * half[at, b] / count[at, b] for b in self._axes if b != a], axis=0)
+            parts.append((at, np.full(at.size, 2 * a + (sign > 0)), rim, place, area))
+        columns = (np.concatenate(column) for column in zip(*parts, strict=True))
+        self.sample, self._face, self._rim, self._place, self._area = columns
+        self._share = np.zeros((len(self.bodies), 6))
+        np.add.at(self._share, (s.body[self.sample[self._rim]], self._face[self._rim]), 1.0)
+        self._share = 1.0 / np.maximum(self._share, 1.0)
+
+    def find(self, domain):
+        """Note, after a rebuild, which patches this rank has, their particles, and which bodies are near which."""
+        p, own = domain.particles, domain.own
+        row = np.full(len(self.samples), -1)
+        at = own.start + np.flatnonzero((p.kind[own] == BODY) & (p.image[own] == 0))
+        row[p.sample[at]] = at
+        self._row = row
+        self._here = np.flatnonzero(self.samples.here[self.sample])
+        size = np.sqrt((self.bodies.half**2).sum(1))
+        span = size[:, None] + size[None, :] + (_FAR + 2.0) * self._spacing
+        apart = self.bodies.position[:, None] - self.bodies.position[None, :]
+        if self._period < math.inf:
+            apart[:, :, 0] -= self._period * np.rint(apart[:, :, 0] / self._period)
+        close = ((apart**2).sum(2) < span**2) & ~np.eye(len(size), dtype=bool)
+        self._others = np.nonzero(close)[1]
+        self._first = np.concatenate([[0], np.cumsum(close.sum(1))])
+
+    def rows(self, domain, near, gate, position, quaternion):
+        """Loads on the bodies by the patches of this rank, and their shares of the pressures along the rims.
+
+        Both (n, 6) with their rows (n,): loads N and N m by body; pressures Pa, by face, in rows `bodies` further on.
+        """
+        p, here, b = domain.particles, self._here, self.bodies
+        load, rim = np.zeros((here.size, 6)), np.zeros((here.size, 6))
+        patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self.samples.body,
+                    near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position, matrices(quaternion), b.half,
+                    self._first, self._others, self._period, self._planes, gate, self._head, self.pressure, self._share,
+                    self._spacing, self._radius, self._layer, self._deep, load, rim)
+        body = self.samples.body[self.sample[here]]
+        return np.concatenate([load, rim]), np.concatenate([body, body + len(b)])
+
+
+def _layers(case):
+    """Sums of W over the first layer of a lattice, one spacing ahead, and of W d / r2 over all layers, in spacings."""
+    support = case.water.support
+    reach = range(-math.ceil(support), math.ceil(support) + 1)
+    across = list(itertools.product(reach, reach) if case.dimensions == 3 else ((i, 0) for i in reach))
+    first, every = 0.0, 0.0
+    for d, (i, j) in itertools.product(range(1, math.ceil(support)), across):
+        r2 = d * d + i * i + j * j
+        weight = max(support / math.sqrt(r2) - 1.0, 0.0)
+        first += weight if d == 1 else 0.0
+        every += weight * d / r2
+    return first, every
+
+
+def _planes(case):
+    """The walls of the box: rows (axis, side, level), side -1 for the low ones."""
+    sides = ((a, sign) for a in case.axes for sign in (-1, 1))
+    rows = [(a, sign, (case.box.min if sign < 0 else case.box.max)[a]) for a, sign in sides
+            if getattr(case.box.faces, f"{'xyz'[a]}_{'min' if sign < 0 else 'max'}") == "wall"]
+    return np.array(rows, float).reshape(-1, 3)
+
+
+@kernel
+def gap_to_plane(x, n, plane):
+    """Distance along the direction n (3,) from x (3,) to a wall in front of it; inf where it faces away."""
+    a = int(plane[0])
+    along = n[a] * plane[1]
+    return (plane[2] - x[a]) * plane[1] / along if along > 0.5 else np.inf
+
+
+@kernel
+def gap_to_box(x, n, half, behind):
+    """Distance along n from x, both in the frame of the box, to its surface, from `behind` the point on; else inf."""
+    enter, leave = -behind, np.inf
+    for a in range(3):
+        if abs(n[a]) < 1e-12:
+            if abs(x[a]) > half[a]:
+                return np.inf
+            continue
+        t0, t1 = (-half[a] - x[a]) / n[a], (half[a] - x[a]) / n[a]
+        enter, leave = max(enter, min(t0, t1)), min(leave, max(t0, t1))
+    return enter if enter <= leave else np.inf
+
+
+@kernel
+def turned(t, x, y, z):
+    """The vector (x, y, z) of the body frame in global axes; t (3, 3), its columns the body axes."""
+    return (t[0, 0] * x + t[0, 1] * y + t[0, 2] * z, t[1, 0] * x + t[1, 1] * y + t[1, 2] * z,
+            t[2, 0] * x + t[2, 1] * y + t[2, 2] * z)
+
+
+@kernel
+def turned_back(t, x, y, z):
+    """The global vector (x, y, z) in body axes."""
+    return (t[0, 0] * x + t[1, 0] * y + t[2, 0] * z, t[0, 1] * x + t[1, 1] * y + t[2, 1] * z,
+            t[0, 2] * x + t[1, 2] * y + t[2, 2] * z)
+
+
+@kernel
+def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, spacing):
+    """Distance from x (3,) along n (3,) to the nearest wall, gate or body of `others`; inf where there is none.
+
+    `gate` (4,): its low and high x, the height of its lower edge, and 1 where there is one; `beside`: the x that tells
+    which face of it counts.
+    """
+    gap = np.inf
+    for w in range(len(planes)):
+        gap = min(gap, gap_to_plane(x, n, planes[w]))
+    if gate[3] > 0.0 and x[2] >= gate[2]:
+        level, side = (gate[0], 1.0) if beside < 0.5 * (gate[0] + gate[1]) else (gate[1], -1.0)
+        if n[0] * side > 0.5:
+            gap = min(gap, (level - x[0]) * side / (n[0] * side))
+    for d in others:
+        dx = x[0] - centre[d, 0]
+        if period < np.inf:
+            dx -= period * np.rint(dx / period)
+        place = turned_back(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
+        gap = min(gap, gap_to_box(place, turned_back(turn[d], n[0], n[1], n[2]), half[d], spacing))
+    return gap
+
+
+@kernel
+def water_at(i, x, n, start, middle, index, px, py, pz, radius):
+    """Sums of sample i: W over all the water it sees; W d / r2 over that before its face, at x with normal n, d ahead.
+
+    The second is what the water pushes with: one layer does 81 % of what deep water does, the film the rest.
+    """
+    every, ahead = 0.0, 0.0
+    for c in range(start[i], middle[i]):
+        j = index[c]
+        dx, dy, dz = px[j] - px[i], py[j] - py[i], pz[j] - pz[i]
+        r2 = dx * dx + dy * dy + dz * dz
+        weight = max(radius / math.sqrt(r2) - 1.0, 0.0)
+        every += weight
+        if (px[j] - x[0]) * n[0] + (py[j] - x[1]) * n[1] + (pz[j] - x[2]) * n[2] > 0.0:
+            ahead += weight / r2 * (dx * n[0] + dy * n[1] + dz * n[2])
+    return every, ahead
+
+
+@kernel
+def patch_loads(here, sample, face, on_rim, place, area, row, body, start, middle, index, px, py, pz, pressure, centre,
+                turn, half, first, others, period, planes, gate, head, film, share, spacing, radius, layer, deep, load,
+                rim):
+    """Load of the film on each patch `here`, and its share of the mean pressure along the rim of its face."""
+    for k in range(here.size):
+        m = here[k]
+        s, f = sample[m], face[m]
+        b = body[s]
+        a, sign = f // 2, 2.0 * (f % 2) - 1.0
+        t = turn[b]
+        lx, ly, lz = turned(t, place[m, 0], place[m, 1], place[m, 2])
+        x = (centre[b, 0] + lx, centre[b, 1] + ly, centre[b, 2] + lz)
+        n = (sign * t[0, a], sign * t[1, a], sign * t[2, a])
+        i = row[s]
+        ahead = 0.0
+        if i >= 0:
+            every, ahead = water_at(i, x, n, start, middle, index, px, py, pz, radius)
+            ahead *= spacing / deep
+            if on_rim[m] and pressure[i] > 0.0:
+                down = head[0] * (x[0] - px[i]) + head[1] * (x[1] - py[i]) + head[2] * (x[2] - pz[i])
+                rim[k, f] = max(pressure[i] + down, 0.0) * min(_FEED * every / layer, 1.0) * share[b, f]
+        if film[b, f] == 0.0 or ahead >= 1.0:
+            continue
+        mx, my, mz = lx - half[b, a] * n[0], ly - half[b, a] * n[1], lz - half[b, a] * n[2]
+        value = film[b, f] + head[0] * mx + head[1] * my + head[2] * mz
+        if value <= 0.0:
+            continue
+        gap = gap_ahead(x, n, centre[b, 0], planes, gate, others[first[b] : first[b + 1]], centre, turn, half, period,
+                        spacing)
+        closed = min(max((_FAR - gap / spacing) / (_FAR - _NEAR), 0.0), 1.0)
+        force = -value * area[m] * closed * (1.0 - ahead)
+        fx, fy, fz = force * n[0], force * n[1], force * n[2]
+        load[k, 0], load[k, 1], load[k, 2] = fx, fy, fz
+        load[k, 3], load[k, 4], load[k, 5] = ly * fz - lz * fy, lz * fx - lx * fz, lx * fy - ly * fx

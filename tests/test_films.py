@@ -1,0 +1,85 @@
+"""Water in gaps too thin for a particle: what a body feels of it on the bed, against another body, under a drop."""
+
+import numpy as np
+import pytest
+from test_water import POOL, SQUARE, TANK, simulation
+
+from parsim.films import gap_to_box, gap_to_plane
+
+WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
+SPREAD = 0.1  # of the lift of a fixed body six particles thick, also in the open; without films it is -4 on the bed
+FIXED = SQUARE | {"fixed": True}
+
+
+def mean_load(bodies, data=POOL, until=0.3):
+    """Mean load of the water on each body between 0.1 s and `until`: (bodies, 6)."""
+    s = simulation(data | {"bodies": bodies, "run": {"until": 1.0, "settle": 1.0}})
+    loads = []
+    while s.time < until:
+        s.step()
+        if s.time > 0.1:
+            loads.append(s.bodies.water_load.copy())
+    return np.mean(loads, axis=0)
+
+
+def test_a_body_on_the_bed_is_lifted_like_any_other():
+    (load,) = mean_load([FIXED | {"position": [0.2, 0.5, 0.03]}])
+    assert load[2] == pytest.approx(WEIGHT, rel=SPREAD)
+    assert abs(load[0]) < 0.1 * WEIGHT and abs(load[4]) < 0.1 * WEIGHT * 0.03
+
+
+def test_a_body_at_a_wall_is_not_held_there():
+    (load,) = mean_load([FIXED | {"position": [0.03, 0.5, 0.15]}])
+    push = 9810.0 * 0.15 * 0.06  # of the water on its other side
+    assert abs(load[0]) < 0.1 * push
+    assert load[2] == pytest.approx(WEIGHT, rel=SPREAD)
+
+
+def test_touching_bodies_are_not_pressed_together():
+    left, right = mean_load([FIXED | {"name": "left", "position": [0.17, 0.5, 0.15]},
+                             FIXED | {"name": "right", "position": [0.23, 0.5, 0.15]}])
+    push = 9810.0 * 0.15 * 0.06
+    assert abs(left[0]) < 0.1 * push and abs(right[0]) < 0.1 * push
+    assert left[2] + right[2] == pytest.approx(2 * WEIGHT, rel=SPREAD)
+
+
+def test_a_drop_does_not_lift_what_it_falls_on():
+    drop = {"fill": [{"min": [0.1, 0.0, 0.06], "max": [0.11, 1.0, 0.07]}], "speed": 2.0}
+    (load,) = mean_load([FIXED | {"position": [0.1, 0.5, 0.03]}], TANK | {"water": drop}, until=0.2)
+    assert load[2] < 0.02 * WEIGHT
+
+
+def test_patches_cover_the_body_and_the_rim_of_each_face_counts_as_one():
+    f = simulation(POOL | {"bodies": [FIXED | {"position": [0.2, 0.5, 0.15]}]}).models.films
+    rows, at = patches(f)
+    assert rows["area"].sum() == pytest.approx(4 * 0.06)
+    assert np.bincount(at, weights=rows["share"], minlength=6) == pytest.approx([1, 1, 0, 0, 1, 1])
+
+
+def patches(films):
+    """Areas, shares of the mean along the rim, and faces of the patches of the first body."""
+    face = films._face
+    return {"area": films._area, "share": films._rim * films._share[0, face]}, face
+
+
+def test_gaps_are_measured_along_the_normal():
+    floor, side = np.array([2.0, -1.0, 0.0]), np.array([0.0, 1.0, 0.5])
+    down, slanted = (0.0, 0.0, -1.0), (0.0, 0.6, -0.8)
+    assert gap_to_plane((0.2, 0.0, 0.03), down, floor) == pytest.approx(0.03)
+    assert gap_to_plane((0.2, 0.0, 0.04), slanted, floor) == pytest.approx(0.05)
+    assert gap_to_plane((0.2, 0.0, 0.03), down, side) == np.inf
+    half = np.array([0.1, 0.2, 0.3])
+    assert gap_to_box((0.0, 0.0, 0.35), down, half, 0.01) == pytest.approx(0.05)
+    assert gap_to_box((0.0, 0.0, 0.295), down, half, 0.01) == pytest.approx(-0.005), "an overlap closes the gap"
+    assert gap_to_box((0.11, 0.0, 0.35), down, half, 0.01) == np.inf, "beside it"
+    assert gap_to_box((0.0, 0.0, -0.4), down, half, 0.01) == np.inf, "behind"
+
+
+def test_water_inside_a_body_is_turned_out_through_the_nearest_face():
+    s = simulation(POOL | {"bodies": [SQUARE | {"position": [0.2, 0.5, 0.15], "velocity": [0.0, 0.0, 0.5]}]})
+    p, near, b = s.domain.particles, s.near, s.bodies
+    inside, outside = near.fluid[np.argsort(np.hypot(p.x[near.fluid] - 0.2, p.z[near.fluid] - 0.15))[:2]]
+    p.x[inside], p.z[inside], p.w[inside] = 0.2, 0.178, -1.0
+    s.models.samples.keep_out(p, near, b.position, b.quaternion)
+    assert p.w[inside] == pytest.approx(0.5 + 0.002 / 0.01) and p.u[inside] == 0.0
+    assert p.w[outside] == p.u[outside] == 0.0
