@@ -43,8 +43,8 @@ def classify(at, start, end, index, x, y, z, c, spacing, lowest, highest, surfac
 
 
 @rows
-def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, near, radius, near2, factor, longest, n0, pull, ax,
-          ay, az, surface, n):
+def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, near, radius, near2, factor, longest, n0, pull,
+          loosest, ax, ay, az, surface, n):
     """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
 
     Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
@@ -54,12 +54,13 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, near, radius, n
     Shifting moves particles but not the evolved n: unseen, water at rest would swell by 0.05 % a second in 2D and by
     0.1 % in 3D. So n goes back to the kernel sum, by the share `pull`, wherever no surface or wall is in the support:
     beside a wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40.
-    At the surface, where the pressure is zero, n is that of zero pressure: a drop must not come back with another.
+    At the surface, where the pressure is zero whatever n is, n stays within the share `loosest` of n0: a drop must not
+    come back with another pressure than the flow can have.
     """
     for row in prange(at.size):
         i = at[row]
         if surface[i] >= SURFACE:
-            n[i] = n0
+            n[i] = min(max(n[i], n0 * (1.0 - loosest)), n0 * (1.0 + loosest))
         if surface[i] == DETACHED:
             ax[i] = ay[i] = az[i] = 0.0
             continue

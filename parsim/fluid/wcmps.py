@@ -29,6 +29,7 @@ class WCMPS:
         self.viscosity = max(water.viscosity, water.damping_viscosity * self.sound * case.spacing)
         self.mass = water.density * self.lattice.volume
         self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
+        self.loosest = 0.5 * (case.speed / case.sound_speed) ** 2  # stagnation pressure of the largest expected speed
         self.recovery = water.recovery * case.speed / case.depth if case.depth else 0.0
         self.restitution = water.restitution
         self.close2 = (water.collision_distance * case.spacing) ** 2
@@ -101,8 +102,8 @@ class WCMPS:
         factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
         surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
                       domain.near(SURFACE, "surface"), lattice.radius, (_VICINITY * lattice.spacing) ** 2, factor,
-                      _LONGEST_SHIFT * lattice.spacing, lattice.number, self.recovery * dt, p.ax, p.ay, p.az,
-                      p.surface, p.n)
+                      _LONGEST_SHIFT * lattice.spacing, lattice.number, self.recovery * dt, self.loosest, p.ax,
+                      p.ay, p.az, p.surface, p.n)
         kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
