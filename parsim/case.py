@@ -87,7 +87,7 @@ class Water(Table):
     collision_distance: Share = Field(0.9, description="distance of particles that come too close, over the spacing")
     shifting: Switch = Field(True, description="whether particles are shifted to keep them evenly spread")
     recovery: Share = Field(
-        0.1, description="rate at which the density goes back to that of the arrangement, over speed / depth"
+        0.1, description="rate at which shifted water takes the density of its arrangement, over speed / depth"
     )
     pressure: Literal["hydrostatic", "zero"] = Field("hydrostatic", description="pressure at the start")
     fill: tuple[Fill, ...] = Field((), description="boxes of water at the start")

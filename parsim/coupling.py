@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 
+from parsim.errors import InputError
 from parsim.jit import kernel
 from parsim.solid.rotation import matrices
 from parsim.state import BODY, Particles, make_id
 
-_WAY_OUT = 0.01  # s that a particle inside a body takes to come out
+_WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
 
 
 class BodySamples:
@@ -21,6 +22,7 @@ class BodySamples:
     def __init__(self, case, bodies, layers):
         self.bodies = bodies
         self._spacing, self._planar = case.spacing, case.dimensions == 2
+        self._axes, self._way_out = np.array(case.axes), _WAY_OUT * case.spacing / case.speed
         offsets, scales, owners = [], [], []
         for b, half in enumerate(bodies.half):
             grid, share = self._grid(half, case.spacing * layers)
@@ -48,10 +50,14 @@ class BodySamples:
         return len(self.offsets)
 
     def samples(self, slab, time):
-        """Body samples of the slab that may see water."""
+        """Body samples of the slab that may see water; InputError for a body that comes to a periodic side."""
         x, y, z = (np.empty(len(self)) for _ in range(3))
         turn = matrices(self.bodies.quaternion)
         locate(self.offsets, self.body, self.bodies.position, turn, x, y, z)
+        beside = slab.beside_period(x, y, z)
+        if beside.any():
+            raise InputError(f"bodies.{self.bodies.names[self.body[beside.argmax()]]}: reaches a periodic side at t = "
+                             f"{time:.6g} s; water and bodies do not see each other across it: keep off, or use walls")
         cells = slab.cells(x, y, z)
         self.here = cells >= 0
         at = np.flatnonzero(slab.awake(cells))
@@ -67,18 +73,17 @@ class BodySamples:
         place_samples(p.kind, p.body, p.sample, self.offsets, position, matrices(quaternion), b.velocity, b.spin,
                       b.acceleration, b.angular_acceleration, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az)
 
-    def loads(self, domain, near, force, centre, films, rows):
+    def loads(self, domain, near, force, centre, others, rows):
         """Exact force and torque about `centre` (bodies, 3) on each body, N and N m, over all ranks: (bodies, 6).
 
-        With those of `films` (n, 6), at `rows` (n,): rows beyond the bodies are summed too and returned as a second
-        array (bodies, 6).
+        `others` (n, 6) at `rows` (n,) are summed with them; the sums of rows beyond the bodies follow, by blocks of
+        (bodies, 6).
         """
-        p, at = domain.particles, near.body
+        p, at, count = domain.particles, near.body, len(centre)
         each = np.empty((at.size, 6))
         levers(at, p.body, p.x, p.y, p.z, centre, force, each)
         rows = np.concatenate([p.body[at].astype(np.int64), rows])
-        return np.split(domain.sum(np.concatenate([each, films]), rows, 2 * len(centre)), 2)
-
+        return np.split(domain.sum(np.concatenate([each, others]), rows, 4 * count), 4)
 
     def find(self, domain, near):
         """Note, after a rebuild, which of this rank's water may meet a body."""
@@ -92,7 +97,7 @@ class BodySamples:
         """
         b = self.bodies
         expel(self._beside, near.middle, near.end, near.index, p.body, p.x, p.y, p.z, position, matrices(quaternion),
-              b.half, b.velocity, b.spin, p.u, p.v, p.w)
+              b.half, b.velocity, b.spin, self._axes, self._way_out, p.u, p.v, p.w)
 
 
 @kernel
@@ -129,8 +134,8 @@ def place_samples(kind, body, sample, offsets, position, turn, velocity, spin, a
 
 
 @kernel
-def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity, spin, u, v, w):
-    """Velocity of fluid particles inside a body: outward through the nearest face, at least its depth in `_WAY_OUT`."""
+def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity, spin, axes, way_out, u, v, w):
+    """Velocity of fluid inside a body: outward through the nearest face, at least its depth in `way_out` s."""
     for i in at:
         last = -1
         for s in range(middle[i], end[i]):
@@ -140,7 +145,7 @@ def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity,
             last = b
             dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
             depth, axis, sign = np.inf, 0, 1.0
-            for a in range(3):
+            for a in axes:
                 along = turn[b, 0, a] * dx + turn[b, 1, a] * dy + turn[b, 2, a] * dz
                 if half[b, a] - abs(along) < depth:
                     depth, axis, sign = half[b, a] - abs(along), a, 1.0 if along > 0.0 else -1.0
@@ -150,7 +155,7 @@ def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity,
             p, q, r = spin[b]
             away = ((u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny
                     + (w[i] - velocity[b, 2] - (p * dy - q * dx)) * nz)
-            more = max(depth / _WAY_OUT - away, 0.0)
+            more = max(depth / way_out - away, 0.0)
             u[i] += more * nx
             v[i] += more * ny
             w[i] += more * nz

@@ -27,6 +27,14 @@ class Slab:
         cell = self._grid.cell(x, y, z, self.begin)
         return np.where((cell >= 0) & (cell < self._marks.size), cell, -1)
 
+    def beside_period(self, *points):
+        """Which of the points, x, y, z (n,) each, lie within a halo of a periodic side: bool (n,)."""
+        g, found = self._grid, np.zeros(points[0].size, bool)
+        for axis in np.flatnonzero(g.periodic):
+            inside = np.minimum(points[axis] - g.low[axis], g.high[axis] - points[axis])
+            found |= inside < REACH * g.edge[axis]
+        return found
+
     def awake(self, cells):
         """Which of `cells` (n,) are in the slab and within reach of water: bool (n,)."""
         return (cells >= 0) & (self._marks[cells] == 1)

@@ -3,8 +3,9 @@
 A gap thinner than the spacing holds no particle, so a face that looks into it would feel no water at all: a floe on the
 bed would be pressed onto it, two floes together, by the full pressure on their other sides. In nature water stands in
 such gaps, at the pressure of the water around them. Here every face is cut into patches, one per sample of its outer
-layer. The pressure in a film is that of the water along the rim of the face, averaged, dry rim counting as zero, and
-hydrostatic within the face; a patch feels it as far as a solid lies close in front of it and no particle does.
+layer. The pressure in a film is hydrostatic, at the mean head of the water that the body sees along its edges; a patch
+feels it as far as a solid lies close in front of it and no particle does, and as far as its face is fed: by the share
+of its rim where there is water, of all the rim that such water would reach and that is open to it.
 """
 
 import itertools
@@ -21,20 +22,19 @@ _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
 
 
 class Films:
-    """The patches of all bodies, and the mean pressure along the rim of each face, Pa: `pressure` (bodies, 6).
+    """The patches of all bodies. What they need from step to step is in `bodies.film`: see `Bodies`.
 
     Faces are numbered 2 axis + (0 low, 1 high) in the body frame.
     """
 
     def __init__(self, case, bodies, samples, lattice):
         self.bodies, self.samples = bodies, samples
-        self.pressure = np.zeros((len(bodies), 6))
         self._spacing, self._radius = case.spacing, lattice.radius
         self._head = case.water.density * np.array(case.gravity)
         self._layer, self._deep = _layers(case)
         self._planes = _planes(case)
         self._period = case.box.size[0] if case.box.faces.x_min == "periodic" else math.inf
-        self._axes = [a for a in case.axes]
+        self._axes = case.axes
         self._patches()
 
     def _patches(self):
@@ -57,9 +57,8 @@ class Films:
             parts.append((at, np.full(at.size, 2 * a + (sign > 0)), rim, place, area))
         columns = (np.concatenate(column) for column in zip(*parts, strict=True))
         self.sample, self._face, self._rim, self._place, self._area = columns
-        self._share = np.zeros((len(self.bodies), 6))
-        np.add.at(self._share, (s.body[self.sample[self._rim]], self._face[self._rim]), 1.0)
-        self._share = 1.0 / np.maximum(self._share, 1.0)
+        self._patch = np.full((len(s), 6), -1)
+        self._patch[self.sample, self._face] = np.arange(self.sample.size)
 
     def find(self, domain):
         """Note, after a rebuild, which patches this rank has, their particles, and which bodies are near which."""
@@ -69,7 +68,7 @@ class Films:
         row[p.sample[at]] = at
         self._row = row
         self._here = np.flatnonzero(self.samples.here[self.sample])
-        size = np.sqrt((self.bodies.half**2).sum(1))
+        size = np.sqrt((self.bodies.half[:, self._axes] ** 2).sum(1))
         span = size[:, None] + size[None, :] + (_FAR + 2.0) * self._spacing
         apart = self.bodies.position[:, None] - self.bodies.position[None, :]
         if self._period < math.inf:
@@ -78,19 +77,28 @@ class Films:
         self._others = np.nonzero(close)[1]
         self._first = np.concatenate([[0], np.cumsum(close.sum(1))])
 
-    def rows(self, domain, near, gate, position, quaternion):
-        """Loads on the bodies by the patches of this rank, and their shares of the pressures along the rims.
+    def loads(self, domain, near, plate, position, quaternion):
+        """What this rank's patches add to sums over all ranks: values (n, 6) and their rows (n,).
 
-        Both (n, 6) with their rows (n,): loads N and N m by body; pressures Pa, by face, in rows `bodies` further on.
+        Rows by body: loads, N and N m; then, each `bodies` rows further on, by face the wet rim and the rim that is dry
+        though open and below the water line, in patches; and the sum of the heads along wet rims, Pa, and their number.
         """
         p, here, b = domain.particles, self._here, self.bodies
-        load, rim = np.zeros((here.size, 6)), np.zeros((here.size, 6))
-        patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self.samples.body,
-                    near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position, matrices(quaternion), b.half,
-                    self._first, self._others, self._period, self._planes, gate, self._head, self.pressure, self._share,
-                    self._spacing, self._radius, self._layer, self._deep, load, rim)
-        body = self.samples.body[self.sample[here]]
-        return np.concatenate([load, rim]), np.concatenate([body, body + len(b)])
+        load, wet, dry, heads = np.zeros((4, here.size, 6))
+        patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
+                    self.samples.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position,
+                    matrices(quaternion), b.half, self._first, self._others, self._period, self._planes, plate,
+                    self._head, b.film, self._spacing, self._radius, self._layer, self._deep, load, wet, dry, heads)
+        body = self.samples.body[self.sample[here]].astype(np.int64)
+        return np.concatenate([load, wet, dry, heads]), np.concatenate([body + k * len(b) for k in range(4)])
+
+    def keep(self, wet, dry, heads):
+        """Note the sums over all ranks, (bodies, 6) each, for the next step."""
+        fed = wet.sum(1) / np.maximum(wet.sum(1) + dry.sum(1), 1e-300)
+        rim = wet + dry
+        self.bodies.film[:, 0] = heads[:, 0] / np.maximum(heads[:, 1], 1e-300)
+        # a face that is sealed all round is as well fed as the body
+        self.bodies.film[:, 1:] = np.where(rim > 0.0, wet / np.maximum(rim, 1e-300), fed[:, None])
 
 
 def _layers(case):
@@ -138,14 +146,14 @@ def gap_to_box(x, n, half, behind):
 
 
 @kernel
-def turned(t, x, y, z):
+def outward(t, x, y, z):
     """The vector (x, y, z) of the body frame in global axes; t (3, 3), its columns the body axes."""
     return (t[0, 0] * x + t[0, 1] * y + t[0, 2] * z, t[1, 0] * x + t[1, 1] * y + t[1, 2] * z,
             t[2, 0] * x + t[2, 1] * y + t[2, 2] * z)
 
 
 @kernel
-def turned_back(t, x, y, z):
+def inward(t, x, y, z):
     """The global vector (x, y, z) in body axes."""
     return (t[0, 0] * x + t[1, 0] * y + t[2, 0] * z, t[0, 1] * x + t[1, 1] * y + t[2, 1] * z,
             t[0, 2] * x + t[1, 2] * y + t[2, 2] * z)
@@ -169,8 +177,8 @@ def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, sp
         dx = x[0] - centre[d, 0]
         if period < np.inf:
             dx -= period * np.rint(dx / period)
-        place = turned_back(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
-        gap = min(gap, gap_to_box(place, turned_back(turn[d], n[0], n[1], n[2]), half[d], spacing))
+        place = inward(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
+        gap = min(gap, gap_to_box(place, inward(turn[d], n[0], n[1], n[2]), half[d], spacing))
     return gap
 
 
@@ -193,37 +201,52 @@ def water_at(i, x, n, start, middle, index, px, py, pz, radius):
 
 
 @kernel
-def patch_loads(here, sample, face, on_rim, place, area, row, body, start, middle, index, px, py, pz, pressure, centre,
-                turn, half, first, others, period, planes, gate, head, film, share, spacing, radius, layer, deep, load,
-                rim):
-    """Load of the film on each patch `here`, and its share of the mean pressure along the rim of its face."""
+def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start, middle, index, px, py, pz, pressure,
+                centre, turn, half, first, others, period, planes, gate, head, film, spacing, radius, layer, deep, load,
+                wet, dry, heads):
+    """Load of the film on each patch `here`, and what its rim tells of the water: see `Films.loads`."""
     for k in range(here.size):
         m = here[k]
         s, f = sample[m], face[m]
         b = body[s]
-        a, sign = f // 2, 2.0 * (f % 2) - 1.0
-        t = turn[b]
-        lx, ly, lz = turned(t, place[m, 0], place[m, 1], place[m, 2])
+        near = others[first[b] : first[b + 1]]
+        lx, ly, lz = outward(turn[b], place[m, 0], place[m, 1], place[m, 2])
         x = (centre[b, 0] + lx, centre[b, 1] + ly, centre[b, 2] + lz)
-        n = (sign * t[0, a], sign * t[1, a], sign * t[2, a])
+        n = normal(turn[b], f)
         i = row[s]
-        ahead = 0.0
+        every, ahead = 0.0, 0.0
         if i >= 0:
             every, ahead = water_at(i, x, n, start, middle, index, px, py, pz, radius)
             ahead *= spacing / deep
-            if on_rim[m] and pressure[i] > 0.0:
-                down = head[0] * (x[0] - px[i]) + head[1] * (x[1] - py[i]) + head[2] * (x[2] - pz[i])
-                rim[k, f] = max(pressure[i] + down, 0.0) * min(_FEED * every / layer, 1.0) * share[b, f]
-        if film[b, f] == 0.0 or ahead >= 1.0:
+        value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
+        if on_rim[m]:
+            share = min(_FEED * every / layer, 1.0) if i >= 0 and pressure[i] > 0.0 else 0.0
+            if share > 0.0:
+                heads[k, 0] = share * (pressure[i] - head[0] * px[i] - head[1] * py[i] - head[2] * pz[i])
+                heads[k, 1] = share
+                wet[k, f] = share
+            if share < 1.0 and value > 0.0 and film[b, 0] != 0.0:
+                for g in range(6):
+                    c = patch[s, g]
+                    if g == f or c < 0:
+                        continue
+                    ex, ey, ez = outward(turn[b], place[c, 0], place[c, 1], place[c, 2])
+                    gap = gap_ahead((centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez), normal(turn[b], g),
+                                    centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
+                    if gap > _FAR * spacing:
+                        dry[k, f] = 1.0 - share
+        if value <= 0.0 or film[b, 1 + f] == 0.0 or ahead >= 1.0:
             continue
-        mx, my, mz = lx - half[b, a] * n[0], ly - half[b, a] * n[1], lz - half[b, a] * n[2]
-        value = film[b, f] + head[0] * mx + head[1] * my + head[2] * mz
-        if value <= 0.0:
-            continue
-        gap = gap_ahead(x, n, centre[b, 0], planes, gate, others[first[b] : first[b + 1]], centre, turn, half, period,
-                        spacing)
+        gap = gap_ahead(x, n, centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
         closed = min(max((_FAR - gap / spacing) / (_FAR - _NEAR), 0.0), 1.0)
-        force = -value * area[m] * closed * (1.0 - ahead)
+        force = -value * film[b, 1 + f] * area[m] * closed * (1.0 - ahead)
         fx, fy, fz = force * n[0], force * n[1], force * n[2]
         load[k, 0], load[k, 1], load[k, 2] = fx, fy, fz
         load[k, 3], load[k, 4], load[k, 5] = ly * fz - lz * fy, lz * fx - lx * fz, lx * fy - ly * fx
+
+
+@kernel
+def normal(t, face):
+    """Outward normal of a face, global axes."""
+    a, sign = face // 2, 2.0 * (face % 2) - 1.0
+    return sign * t[0, a], sign * t[1, a], sign * t[2, a]

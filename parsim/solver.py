@@ -70,9 +70,10 @@ class Simulation:
             return None
         centre, quaternion = self.bodies.drifted(0.5 * dt)
         force, films = self.scheme.react(self.domain, self.near, dt), self.models.films
-        plate = self.gate.place(self.time + 0.5 * dt) if self.gate else np.zeros(4)
-        rows = films.rows(self.domain, self.near, plate, centre, quaternion)
-        load, films.pressure = self.models.samples.loads(self.domain, self.near, force, centre, *rows)
+        plate = self.gate.outline(self.time + 0.5 * dt) if self.gate else np.zeros(4)
+        added = films.loads(self.domain, self.near, plate, centre, quaternion)
+        load, *rims = self.models.samples.loads(self.domain, self.near, force, centre, *added)
+        films.keep(*rims)
         return load
 
     def _move(self, load, dt, keep):

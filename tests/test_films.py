@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from test_water import POOL, SQUARE, TANK, simulation
 
+from parsim.errors import InputError
 from parsim.films import gap_to_box, gap_to_plane
 
 WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
@@ -43,23 +44,30 @@ def test_touching_bodies_are_not_pressed_together():
     assert left[2] + right[2] == pytest.approx(2 * WEIGHT, rel=SPREAD)
 
 
+@pytest.mark.parametrize("count", [2, 3])
+def test_touching_bodies_on_the_bed_are_lifted_too(count):
+    loads = mean_load([FIXED | {"name": f"b{k}", "position": [0.14 + 0.06 * k, 0.5, 0.03]} for k in range(count)])
+    assert loads[:, 2] == pytest.approx(WEIGHT, rel=2 * SPREAD)
+    assert np.abs(loads[:, 0]).max() < 0.1 * 9810.0 * 0.27 * 0.06
+
+
+def test_touching_bodies_do_not_drive_themselves():
+    small = FIXED | {"name": "small", "position": [0.14, 0.5, 0.3]}
+    large = FIXED | {"name": "large", "position": [0.23, 0.5, 0.3], "shape": {"size": [0.12, 1.0, 0.12]}}
+    loads = mean_load([small, large])
+    assert abs(loads[0, 0]) < 0.2 * 0.5 * 9810.0 * 0.03**2 and abs(loads[:, 0].sum()) < 0.2 * 0.5 * 9810.0 * 0.06**2
+
+
 def test_a_drop_does_not_lift_what_it_falls_on():
     drop = {"fill": [{"min": [0.1, 0.0, 0.06], "max": [0.11, 1.0, 0.07]}], "speed": 2.0}
     (load,) = mean_load([FIXED | {"position": [0.1, 0.5, 0.03]}], TANK | {"water": drop}, until=0.2)
     assert load[2] < 0.02 * WEIGHT
 
 
-def test_patches_cover_the_body_and_the_rim_of_each_face_counts_as_one():
-    f = simulation(POOL | {"bodies": [FIXED | {"position": [0.2, 0.5, 0.15]}]}).models.films
-    rows, at = patches(f)
-    assert rows["area"].sum() == pytest.approx(4 * 0.06)
-    assert np.bincount(at, weights=rows["share"], minlength=6) == pytest.approx([1, 1, 0, 0, 1, 1])
-
-
-def patches(films):
-    """Areas, shares of the mean along the rim, and faces of the patches of the first body."""
-    face = films._face
-    return {"area": films._area, "share": films._rim * films._share[0, face]}, face
+def test_patches_cover_the_body():
+    films = simulation(POOL | {"bodies": [FIXED | {"position": [0.2, 0.5, 0.15]}]}).models.films
+    assert films._area.sum() == pytest.approx(4 * 0.06)
+    assert films._rim.sum() == 8, "in 2D the rim of a face is its two ends"
 
 
 def test_gaps_are_measured_along_the_normal():
@@ -81,5 +89,18 @@ def test_water_inside_a_body_is_turned_out_through_the_nearest_face():
     inside, outside = near.fluid[np.argsort(np.hypot(p.x[near.fluid] - 0.2, p.z[near.fluid] - 0.15))[:2]]
     p.x[inside], p.z[inside], p.w[inside] = 0.2, 0.178, -1.0
     s.models.samples.keep_out(p, near, b.position, b.quaternion)
-    assert p.w[inside] == pytest.approx(0.5 + 0.002 / 0.01) and p.u[inside] == 0.0
+    assert p.w[inside] == pytest.approx(0.5 + 0.002 / (5 * 0.01 / s.case.speed)) and p.u[inside] == 0.0
     assert p.w[outside] == p.u[outside] == 0.0
+
+
+@pytest.mark.parametrize("x", [0.01, 0.06, 0.37])
+def test_a_body_at_a_periodic_side_is_refused_by_name(x):
+    sides = {"max": POOL["box"]["max"], "faces": {"x_min": "periodic", "x_max": "periodic"}}
+    with pytest.raises(InputError, match="bodies.square: reaches a periodic side at t = 0 s"):
+        simulation(POOL | {"box": sides, "bodies": [SQUARE | {"position": [x, 0.5, 0.15]}]})
+
+
+def test_a_body_off_a_periodic_side_is_carried():
+    sides = {"max": POOL["box"]["max"], "faces": {"x_min": "periodic", "x_max": "periodic"}}
+    (load,) = mean_load([FIXED | {"position": [0.2, 0.5, 0.03]}], POOL | {"box": sides}, until=0.15)
+    assert load[2] == pytest.approx(WEIGHT, rel=SPREAD) and abs(load[0]) < 0.02 * WEIGHT

@@ -31,7 +31,7 @@ REDUCTIONS = {
     "norm",
 }
 ROUNDED = {"pow", "power", "exp", "expm1", "log", "log1p", "log2", "log10", "sin", "cos", "tan", "tanh", "sinh", "cosh"}
-STRICT = ("fluid/", "neighbours.py", "cells.py", "coupling.py")
+STRICT = ("fluid/", "neighbours.py", "cells.py", "coupling.py", "films.py")
 ABOVE_KERNELS = {"comm", "domain", "solver", "setup", "launch", "case", "output", "report"}
 BESIDE_REPORT = {"output", "errors", "case", "report", "launch"}
 
@@ -130,7 +130,7 @@ def test_imports(path):
         assert not own(parsed) & ABOVE_KERNELS, "kernels import downward only"
     if inside.startswith("report/"):
         assert own(parsed) <= BESIDE_REPORT, "report reads files and knows no solver"
-    if inside.startswith(("fluid/", "solid/", "boundary/", "coupling")):
+    if inside.startswith(("fluid/", "solid/", "boundary/", "coupling", "films")):
         assert not own(parsed) & {"comm", "launch"}, "the physics never sees a rank"
 
 

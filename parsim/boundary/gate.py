@@ -34,7 +34,7 @@ class Gate:
         """Height above which the plate hides, m: everything while it stands on the floor."""
         return -math.inf if self.closed(time) else self.bottom(time)
 
-    def place(self, time):
+    def outline(self, time):
         """Low and high x and lower edge of the plate at `time`, m, and 1: (4,)."""
         return np.array([self.min_x, self.max_x, self.bottom(time), 1.0])
 

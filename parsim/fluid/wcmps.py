@@ -29,7 +29,7 @@ class WCMPS:
         self.viscosity = max(water.viscosity, water.damping_viscosity * self.sound * case.spacing)
         self.mass = water.density * self.lattice.volume
         self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
-        self.loosest = 0.5 * (case.speed / case.sound_speed) ** 2  # stagnation pressure of the largest expected speed
+        self.loosest = 0.5 / water.sound**2  # the stagnation pressure of the largest expected speed
         self.recovery = water.recovery * case.speed / case.depth if case.depth else 0.0
         self.restitution = water.restitution
         self.close2 = (water.collision_distance * case.spacing) ** 2

@@ -19,7 +19,8 @@ class Bodies:
     place before and then let go from rest. position (nb, 3), m; quaternion (nb, 4), body to global; velocity (nb, 3),
     m/s; spin (nb, 3), global axes, rad/s.
     Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
-    force, N, and torque about the centre, N m.
+    force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin, and how well
+    each face is fed with it, 0 to 1 (`parsim.films`).
     """
 
     def __init__(self, half, mass, position, quaternion=None, velocity=0.0, spin=0.0, *, names=None, material=0,
@@ -35,6 +36,7 @@ class Bodies:
         self.velocity[still], self.spin[still] = 0.0, 0.0
         self.quaternion = _rows((1.0, 0.0, 0.0, 0.0) if quaternion is None else quaternion, count, 4)
         self.acceleration, self.angular_acceleration = np.zeros((count, 3)), np.zeros((count, 3))
+        self.film = np.zeros((count, 7))
         self.water_load, self.contact_load, self.gravity_load = (np.zeros((count, 6)) for _ in range(3))
 
     def __len__(self):
