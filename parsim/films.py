@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from parsim.jit import kernel
-from parsim.solid.rotation import matrices
+from parsim.solid.rotation import matrices, to_body, to_global
 from parsim.state import BODY
 
 _NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
@@ -87,8 +87,9 @@ class Films:
         load, wet, dry, heads = np.zeros((4, here.size, 6))
         patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
                     self.samples.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position,
-                    matrices(quaternion), b.half, self._first, self._others, self._period, self._planes, plate,
-                    self._head, b.film, self._spacing, self._radius, self._layer, self._deep, load, wet, dry, heads)
+                    matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period, self._planes,
+                    plate, self._head, b.film, self._spacing, self._radius, self._layer, self._deep, load, wet,
+                    dry, heads)
         body = self.samples.body[self.sample[here]].astype(np.int64)
         return np.concatenate([load, wet, dry, heads]), np.concatenate([body + k * len(b) for k in range(4)])
 
@@ -146,20 +147,6 @@ def gap_to_box(x, n, half, behind):
 
 
 @kernel
-def outward(t, x, y, z):
-    """The vector (x, y, z) of the body frame in global axes; t (3, 3), its columns the body axes."""
-    return (t[0, 0] * x + t[0, 1] * y + t[0, 2] * z, t[1, 0] * x + t[1, 1] * y + t[1, 2] * z,
-            t[2, 0] * x + t[2, 1] * y + t[2, 2] * z)
-
-
-@kernel
-def inward(t, x, y, z):
-    """The global vector (x, y, z) in body axes."""
-    return (t[0, 0] * x + t[1, 0] * y + t[2, 0] * z, t[0, 1] * x + t[1, 1] * y + t[2, 1] * z,
-            t[0, 2] * x + t[1, 2] * y + t[2, 2] * z)
-
-
-@kernel
 def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, spacing):
     """Distance from x (3,) along n (3,) to the nearest wall, gate or body of `others`; inf where there is none.
 
@@ -177,8 +164,8 @@ def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, sp
         dx = x[0] - centre[d, 0]
         if period < np.inf:
             dx -= period * np.rint(dx / period)
-        place = inward(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
-        gap = min(gap, gap_to_box(place, inward(turn[d], n[0], n[1], n[2]), half[d], spacing))
+        place = to_body(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
+        gap = min(gap, gap_to_box(place, to_body(turn[d], n[0], n[1], n[2]), half[d], spacing))
     return gap
 
 
@@ -210,7 +197,7 @@ def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start
         s, f = sample[m], face[m]
         b = body[s]
         near = others[first[b] : first[b + 1]]
-        lx, ly, lz = outward(turn[b], place[m, 0], place[m, 1], place[m, 2])
+        lx, ly, lz = to_global(turn[b], place[m, 0], place[m, 1], place[m, 2])
         x = (centre[b, 0] + lx, centre[b, 1] + ly, centre[b, 2] + lz)
         n = normal(turn[b], f)
         i = row[s]
@@ -230,7 +217,7 @@ def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start
                     c = patch[s, g]
                     if g == f or c < 0:
                         continue
-                    ex, ey, ez = outward(turn[b], place[c, 0], place[c, 1], place[c, 2])
+                    ex, ey, ez = to_global(turn[b], place[c, 0], place[c, 1], place[c, 2])
                     gap = gap_ahead((centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez), normal(turn[b], g),
                                     centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
                     if gap > _FAR * spacing:
@@ -247,6 +234,6 @@ def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start
 
 @kernel
 def normal(t, face):
-    """Outward normal of a face, global axes."""
+    """Outward normal of a face, global axes; t (9,), the rotation matrix by rows."""
     a, sign = face // 2, 2.0 * (face % 2) - 1.0
-    return sign * t[0, a], sign * t[1, a], sign * t[2, a]
+    return sign * t[a], sign * t[3 + a], sign * t[6 + a]

@@ -114,9 +114,9 @@ class Simulation:
             if self.gate:
                 near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
                 self._closed = self.gate.closed(self.time)
-        if len(self.bodies.mass):
-            self.models.samples.find(domain, near)
-            self.models.films.find(domain)
+            if len(self.bodies.mass):
+                self.models.samples.find(domain, near)
+                self.models.films.find(domain)
         with self.timers("sums"):
             self.active, self.fluid_count = domain.count(near.fluid.size + near.boundary.size, near.fluid.size)
         p, at = domain.particles, near.fluid
