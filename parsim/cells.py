@@ -1,6 +1,8 @@
-"""The global grid of cells, anchored to the box: cell of a point, sort by (cell, id), layer offsets.
+"""The global grid of cells and layers, anchored to the box: cell of a point, sort by cell, what a slab stores where.
 
-A layer is all cells with the same x-index. Cells of edge (re + skin) / REACH make a halo of REACH layers.
+Cells of edge (re + skin) / REACH make a halo of REACH cells. A *layer* is a slice across x of 1 / LAYERS of a cell: a
+slab is a run of whole layers, so that work can be cut finely while lists are still searched in large cells. A column
+is all cells with the same x-index; one that a cut runs through is stored in two pieces, one for each owner.
 """
 
 import numpy as np
@@ -8,6 +10,9 @@ import numpy as np
 from parsim.jit import kernel
 
 REACH = 2
+LAYERS = 8
+HALO = REACH * LAYERS  # layers of a halo, and the fewest that a slab may have
+_ID_BITS = 59  # ids are smaller than 2^59: what the layer within the cell is put above
 
 
 class Grid:
@@ -26,35 +31,68 @@ class Grid:
         self.pad = np.array([0, REACH * self.periodic[1], REACH * self.periodic[2]], np.int64)
         self.origin = low - self.pad * self.edge
         self.count = inner + 2 * self.pad
-        self.layers = int(inner[0])
-        self.per_layer = int(self.count[1] * self.count[2])
+        self.layers = int(inner[0]) * LAYERS
+        self.per_column = int(self.count[1] * self.count[2])
 
     def layer(self, x):
         """Layer of each x (n,), clipped to the grid."""
-        return np.clip(np.floor((x - self.origin[0]) / self.edge[0]).astype(np.int64), 0, self.layers - 1)
+        return layer_index(x, self.origin[0], self.edge[0] / LAYERS, self.layers)
 
-    def cell(self, x, y, z, first_layer=0):
-        """Cell index of each point (n,), counted from layer `first_layer`; points outside go to the nearest cell."""
-        return cell_index(x, y, z, self.origin, self.edge, self.count, first_layer)
+    def cell(self, slot, y, z):
+        """Cell of each point (n,) in column or piece `slot` (n,): y slower, z fastest; clipped to the grid."""
+        return cell_index(slot, y, z, self.origin, self.edge, self.count)
+
+
+class Stack:
+    """How a slab of layers `begin` to `end` and its halos are stored: in pieces of columns, halos and owned apart.
+
+    Attributes: piece (layers,), the piece of each stored layer; column (pieces,), the stored column of each piece;
+    pieces (columns + 1,), the first piece of each stored column; own, the slice of owned pieces.
+    """
+
+    def __init__(self, begin, end):
+        layers = np.arange(begin - HALO, end + HALO)
+        column = layers // LAYERS
+        new = (np.diff(column) != 0) | (layers[1:] == begin) | (layers[1:] == end)
+        self.piece = np.concatenate([[0], np.cumsum(new)])
+        self.column = column[np.concatenate([[True], new])] - column[0]
+        self.pieces = np.searchsorted(self.column, np.arange(self.column[-1] + 2))
+        self.own = slice(int(self.piece[HALO]), int(self.piece[HALO + end - begin - 1]) + 1)
 
 
 @kernel
-def cell_index(x, y, z, origin, edge, count, first_layer):
-    """Cell of each point (n,) int64: x slowest, z fastest."""
+def layer_index(x, origin, thickness, layers):
+    """Layer of each x (n,) int64, clipped to 0..layers - 1."""
     out = np.empty(x.size, np.int64)
     for i in range(x.size):
-        cx = min(max(int(np.floor((x[i] - origin[0]) / edge[0])), 0), count[0] - 1)
-        cy = min(max(int(np.floor((y[i] - origin[1]) / edge[1])), 0), count[1] - 1)
-        cz = min(max(int(np.floor((z[i] - origin[2]) / edge[2])), 0), count[2] - 1)
-        out[i] = ((cx - first_layer) * count[1] + cy) * count[2] + cz
+        out[i] = min(max(int(np.floor((x[i] - origin) / thickness)), 0), layers - 1)
     return out
 
 
 @kernel
-def sort_by_cell(cell, ident, cells):
-    """Order (n,) that sorts by (cell, id), and the first particle of each cell (cells + 1,).
+def cell_index(slot, y, z, origin, edge, count):
+    """Cell of each point (n,) int64: slot slowest, z fastest."""
+    out = np.empty(y.size, np.int64)
+    for i in range(y.size):
+        cy = min(max(int(np.floor((y[i] - origin[1]) / edge[1])), 0), count[1] - 1)
+        cz = min(max(int(np.floor((z[i] - origin[2]) / edge[2])), 0), count[2] - 1)
+        out[i] = (slot[i] * count[1] + cy) * count[2] + cz
+    return out
 
-    Counting sort, then insertion by id inside a cell, which holds only a few particles.
+
+def sort_key(layer, ident):
+    """What particles (n,) of one cell are sorted by, int64: the layer within the cell, then the id.
+
+    So the part of a cell on one side of a cut comes in the same order as in the whole cell.
+    """
+    return ((layer % LAYERS) << _ID_BITS) + ident
+
+
+@kernel
+def sort_by_cell(cell, key, cells):
+    """Order (n,) that sorts by (cell, key), and the first particle of each cell (cells + 1,).
+
+    Counting sort, then insertion by key inside a cell, which holds only a few particles.
     """
     first = np.zeros(cells + 1, np.int64)
     for i in range(cell.size):
@@ -66,7 +104,7 @@ def sort_by_cell(cell, ident, cells):
     for i in range(cell.size):
         c = cell[i]
         at = filled[c]
-        while at > first[c] and ident[order[at - 1]] > ident[i]:
+        while at > first[c] and key[order[at - 1]] > key[i]:
             order[at] = order[at - 1]
             at -= 1
         order[at] = i
@@ -75,15 +113,11 @@ def sort_by_cell(cell, ident, cells):
 
 
 @kernel
-def occupied(x, y, z, origin, edge, count, first_layer, layers):
-    """Which cells hold a point: uint8 (layers, count[1], count[2]), layers counted from `first_layer`."""
-    out = np.zeros((layers, count[1], count[2]), np.uint8)
-    for i in range(x.size):
-        cx = min(max(int(np.floor((x[i] - origin[0]) / edge[0])), 0), count[0] - 1) - first_layer
-        cy = min(max(int(np.floor((y[i] - origin[1]) / edge[1])), 0), count[1] - 1)
-        cz = min(max(int(np.floor((z[i] - origin[2]) / edge[2])), 0), count[2] - 1)
-        if 0 <= cx < layers:
-            out[cx, cy, cz] = 1
+def occupied(cell, cells):
+    """Which of `cells` cells hold a particle of cell (n,): uint8 (cells,)."""
+    out = np.zeros(cells, np.uint8)
+    for i in range(cell.size):
+        out[cell[i]] = 1
     return out
 
 

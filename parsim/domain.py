@@ -1,14 +1,14 @@
 """Slabs of whole cell layers: who owns what, halos, migration, balance, exact sums.
 
 Models know three verbs of a domain: `refresh(*fields)`, `sum`, `max`; they never see a rank. Memory of a rank reads
-left halo | owned | right halo, sorted by (cell, id), so that a halo is one contiguous slice and a particle meets its
-neighbours in the same order on any number of ranks.
+left halo | owned | right halo, each sorted by (cell, layer, id), so that a particle meets its neighbours in the same
+order on any number of ranks.
 """
 
 import numpy as np
 
 from parsim import exact
-from parsim.cells import REACH, holding, occupied, sort_by_cell, spread
+from parsim.cells import HALO, LAYERS, REACH, Stack, holding, occupied, sort_by_cell, sort_key, spread
 from parsim.jit import kernel
 from parsim.state import POSITION, Particles
 
@@ -24,8 +24,9 @@ class Slab:
 
     def cells(self, x, y, z):
         """Cell of each point (n,) within the slab, -1 for points of other slabs."""
-        cell = self._grid.cell(x, y, z, self.begin)
-        return np.where((cell >= 0) & (cell < self._marks.size), cell, -1)
+        layer = self._grid.layer(x)
+        cell = self._grid.cell(layer // LAYERS - self.begin // LAYERS, y, z)
+        return np.where((layer >= self.begin) & (layer < self.end), cell, -1)
 
     def beside_period(self, *points):
         """Which of the points, x, y, z (n,) each, lie within a halo of a periodic side: bool (n,)."""
@@ -41,12 +42,17 @@ class Slab:
 
 
 class Domain:
-    """One rank's slab. `particles` holds halo and owned, `own` the slice of owned ones, `first` the cell offsets."""
+    """One rank's slab.
+
+    `particles` holds halos and owned, `own` the slice of owned ones, `stack` the pieces they are stored in, `first` the
+    offsets of the cells of all pieces.
+    """
 
     def __init__(self, grid, comm, sources, cuts=None):
         self.grid, self.comm, self.sources = grid, comm, sources
         self.cuts = np.linspace(0, grid.layers, comm.size + 1).round().astype(np.int64) if cuts is None else cuts
         self.lost = 0
+        self._buffers = {}
 
     @property
     def layers(self):
@@ -71,8 +77,8 @@ class Domain:
             shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
             copy_images(getattr(p, name), self._image_at, self._image_of, shift)
         count = len(names)
-        to_left = np.empty((count, self._send_left.stop - self._send_left.start))
-        to_right = np.empty((count, self._send_right.stop - self._send_right.start))
+        to_left = np.empty((count, self._send_left.size))
+        to_right = np.empty((count, self._send_right.size))
         from_left = np.empty((count, self.own.start))
         from_right = np.empty((count, len(p) - self.own.stop))
         for k, name in enumerate(names):
@@ -89,8 +95,9 @@ class Domain:
 
     def near(self, value, name):
         """Which particles may have a neighbour whose field `name` is `value`, by cells: bool (particles,)."""
-        marks = holding(value, getattr(self.particles, name), self.first)
-        marks = spread(marks.reshape(-1, *self.grid.count[1:]), REACH).ravel()
+        marks = holding(value, getattr(self.particles, name), self.first).reshape(-1, *self.grid.count[1:])
+        columns = np.maximum.reduceat(marks, self.stack.pieces[:-1])
+        marks = spread(columns, REACH)[self.stack.column].ravel()
         return np.repeat(marks.view(bool), np.diff(self.first))
 
     def sum(self, values, index=None, count=1):
@@ -114,12 +121,9 @@ class Domain:
 
     def balance(self, lengths):
         """Move the cuts to equal work, counted as listed pairs, `lengths` (particles,); the next rebuild acts on it."""
-        begin, end = self.layers
-        lengths = lengths[self.own] + 8
+        layer = self.grid.layer(self.particles.x[self.own])
         work = np.zeros(self.grid.layers, np.int64)
-        for layer in range(begin, end):
-            a, b = (self.first[(layer - begin + REACH + k) * self.grid.per_layer] - self.own.start for k in (0, 1))
-            work[layer] = lengths[a:b].sum()
+        accumulate(layer, lengths[self.own] + 8, work)
         work = self.comm.sum_integers(work)
         shares = np.add.reduceat(work, self.cuts[:-1])
         if shares.max() * self.comm.size > _UNEVEN * work.sum():
@@ -163,20 +167,24 @@ class Domain:
         """Flat marks of the slab's cells within reach of fluid, that of the neighbouring slabs included."""
         begin, end = self.layers
         g = self.grid
-        marks = occupied(fluid.x, fluid.y, fluid.z, g.origin, g.edge, g.count, begin, end - begin)
+        first, last = begin // LAYERS, -(-end // LAYERS)
+        cell = g.cell(g.layer(fluid.x) // LAYERS - first, fluid.y, fluid.z)
+        marks = occupied(cell, (last - first) * g.per_column).reshape(-1, *g.count[1:])
         for axis in (1, 2):  # images are fluid too
             if g.periodic[axis]:
                 marks = np.moveaxis(marks, axis, 0)
                 marks[:REACH] |= marks[-2 * REACH : -REACH]
                 marks[-REACH:] |= marks[REACH : 2 * REACH]
                 marks = np.ascontiguousarray(np.moveaxis(marks, 0, axis))
-        left, right = self.comm.exchange(marks[:REACH].ravel(), marks[-REACH:].ravel())
-        padded = np.zeros((end - begin + 2 * REACH, *marks.shape[1:]), np.uint8)
+        # a column with a cut in it is marked by both owners: hence one more than the reach
+        left, right = (side.reshape(-1, *g.count[1:])
+                       for side in self.comm.exchange(marks[: REACH + 1].ravel(), marks[-REACH - 1 :].ravel()))
+        padded = np.zeros((len(marks) + 2 * REACH, *marks.shape[1:]), np.uint8)
         padded[REACH:-REACH] = marks
-        if left.size:
-            padded[:REACH] = left.reshape(REACH, *marks.shape[1:])
-        if right.size:
-            padded[-REACH:] = right.reshape(REACH, *marks.shape[1:])
+        until, since = -(-begin // LAYERS) - first + REACH, end // LAYERS - first + REACH
+        left, right = left[-until:], right[: len(padded) - since]
+        padded[until - len(left) : until] |= left
+        padded[since : since + len(right)] |= right
         return spread(padded, REACH)[REACH:-REACH].ravel()
 
     def _with_images(self, particles):
@@ -197,37 +205,35 @@ class Domain:
         return particles
 
     def _assemble(self, owned):
-        """Sort the owned particles, exchange the layers next to the cuts, and note the slices of every refresh."""
+        """Exchange the layers next to the cuts, sort everything, and note what every refresh sends."""
         g, (begin, end) = self.grid, self.layers
-        cell = g.cell(owned.x, owned.y, owned.z, begin)
-        order, first = sort_by_cell(cell, owned.id, (end - begin) * g.per_layer)
-        owned = owned.take(order)
-        block = REACH * g.per_layer
-        left_end, right_begin = int(first[block]), int(first[-block - 1])
-        halos = self.comm.exchange(owned.take(slice(0, left_end)).pack(),
-                                   owned.take(slice(right_begin, len(owned))).pack())
+        layer = g.layer(owned.x)
+        halos = self.comm.exchange(owned.take(layer < begin + HALO).pack(), owned.take(layer >= end - HALO).pack())
         left, right = (Particles.unpack(buffer) for buffer in halos)
-        self._period_left = -g.period[0] if self.comm.rank == 0 else 0.0
-        self._period_right = g.period[0] if self.comm.rank == self.comm.size - 1 else 0.0
+        left_end, right_end = self.comm.rank == 0, self.comm.rank == self.comm.size - 1
+        stored = np.concatenate([g.layer(left.x) - g.layers * left_end, layer, g.layer(right.x) + g.layers * right_end])
+        self._period_left, self._period_right = -g.period[0] * left_end, g.period[0] * right_end
         left.x += self._period_left
         right.x += self._period_right
         self.own = slice(len(left), len(left) + len(owned))
-        self.particles = Particles.join([left, owned, right])
-        self._send_left = slice(self.own.start, self.own.start + left_end)
-        self._send_right = slice(self.own.start + right_begin, self.own.stop)
-        offsets = self.comm.exchange(first[: block + 1].copy(), first[-block - 1 :] - right_begin)
-        left_first, right_first = (o if o.size else np.zeros(block + 1, np.int64) for o in offsets)
-        self.first = np.concatenate([left_first[:-1], first[:-1] + self.own.start, right_first + self.own.stop])
+        every, self.stack = Particles.join([left, owned, right]), Stack(begin, end)
+        cell = g.cell(self.stack.piece[stored - begin + HALO], every.y, every.z)
+        order, self.first = sort_by_cell(cell, sort_key(stored, every.id), self.stack.column.size * g.per_column)
+        self.particles = every.sorted(order, self._buffers)
+        stored = stored[order][self.own]
+        self._send_left = self.own.start + np.flatnonzero(stored < begin + HALO)
+        self._send_right = self.own.start + np.flatnonzero(stored >= end - HALO)
         self._note_images()
 
     def _note_images(self):
         """Owned images, the particles they copy, and the shifts between them."""
         p, own = self.particles, np.arange(self.own.start, self.own.stop)
         self._image_at = own[p.image[own] == 1]
-        real = own[p.image[own] == 0]
-        real = real[np.argsort(p.id[real])]
-        at = np.searchsorted(p.id[real], p.id[self._image_at]) if self._image_at.size else self._image_at
-        self._image_of = real[at]
+        self._image_of = self._image_at
+        if self._image_at.size:
+            real = own[p.image[own] == 0]
+            real = real[np.argsort(p.id[real])]
+            self._image_of = real[np.searchsorted(p.id[real], p.id[self._image_at])]
         self._no_shift = np.zeros(self._image_at.size)
         self._image_shift = [self._no_shift]
         for name, period in zip(("y", "z"), self.grid.period[1:], strict=True):
@@ -237,7 +243,7 @@ class Domain:
 
 
 def even_cuts(work, ranks):
-    """Cuts (ranks + 1,) between layers that split work (layers,) evenly, at least REACH layers each."""
+    """Cuts (ranks + 1,) between layers that split work (layers,) evenly, at least HALO layers each."""
     before = np.concatenate([[0], np.cumsum(work)])
     cuts = np.searchsorted(before, before[-1] * np.arange(ranks + 1) / ranks)
     for k in range(1, ranks + 1):  # the nearer of the two layers beside the ideal place
@@ -246,9 +252,9 @@ def even_cuts(work, ranks):
             cuts[k] = at - 1
     cuts[0], cuts[-1] = 0, work.size
     for k in range(1, ranks):
-        cuts[k] = max(cuts[k], cuts[k - 1] + REACH)
+        cuts[k] = max(cuts[k], cuts[k - 1] + HALO)
     for k in range(ranks - 1, 0, -1):
-        cuts[k] = min(cuts[k], cuts[k + 1] - REACH)
+        cuts[k] = min(cuts[k], cuts[k + 1] - HALO)
     return cuts.astype(np.int64)
 
 
@@ -257,3 +263,10 @@ def copy_images(field, at, of, shift):
     """field[at] = field[of] + shift, element by element."""
     for k in range(at.size):
         field[at[k]] = field[of[k]] + shift[k]
+
+
+@kernel
+def accumulate(at, values, total):
+    """total[at] += values, element by element, whole numbers."""
+    for k in range(at.size):
+        total[at[k]] += values[k]

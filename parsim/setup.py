@@ -6,7 +6,7 @@ import numpy as np
 
 from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall import Walls
-from parsim.cells import REACH, Grid
+from parsim.cells import HALO, REACH, Grid
 from parsim.coupling import BodySamples
 from parsim.domain import Domain
 from parsim.errors import InputError
@@ -18,15 +18,15 @@ from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
 from parsim.state import FLUID, Particles, make_id
 
-_ROOM = 1.3  # length of the neighbour rows over that of the full lattice
+_ROOM = 1.05  # length of the neighbour rows over that of the full lattice
 
 
 def check_ranks(case, ranks):
     """Raise InputError when the box has too few layers of cells for this many ranks."""
     layers = grid_of(case, _layers(case), _reach(case)).layers
-    if layers < REACH * ranks:
+    if layers < HALO * ranks:
         raise InputError(f"{ranks} ranks: the box has {layers} layers of cells along x and a rank needs at least "
-                         f"{REACH}; use at most {layers // REACH} ranks")
+                         f"{HALO}; use at most {layers // HALO} ranks")
 
 
 def _layers(case):
@@ -55,7 +55,7 @@ class Models:
         sources = [s for s in (self.samples, self.gate_samples, self.walls) if s is not None]
         self.domain = Domain(grid_of(case, layers, self.reach), comm, sources)
         share = (1.0 + case.run.skin / case.water.support) ** case.dimensions
-        self.near = Neighbours(int(self.scheme.lattice.count * share * _ROOM) + 8)
+        self.near = Neighbours(self.scheme.lattice.count * share * _ROOM)
 
 
 def grid_of(case, layers, reach):

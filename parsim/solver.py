@@ -110,7 +110,7 @@ class Simulation:
                 domain.balance(near.end - near.start)
             domain.rebuild(fluid, self.time)
         with self.timers("neighbours"):
-            near.build(domain.particles, domain.first, domain.grid, domain.own, self.models.reach)
+            near.build(domain, self.models.reach)
             if self.gate:
                 near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
                 self._closed = self.gate.closed(self.time)

@@ -57,12 +57,12 @@ _DEFAULTS = {"body": -1, "sample": -1, "scale": 1.0}
 
 
 class Particles:
-    """Structure of arrays: one contiguous array of shape (count,) per field of `FIELDS`."""
+    """Structure of arrays: one contiguous array of shape (count,) per kept field, and per derived one once `sorted`."""
 
     __slots__ = NAMES
 
     def __init__(self, count=0, **given):
-        for name in NAMES:
+        for name in KEPT:
             values = np.asarray(given.get(name, _DEFAULTS.get(name, 0)), _DTYPES[name])
             setattr(self, name, np.ascontiguousarray(values) if values.ndim else np.full(count, values))
 
@@ -81,6 +81,24 @@ class Particles:
             return parts[0]
         kept = {name: np.concatenate([getattr(part, name) for part in parts]) for name in KEPT}
         return Particles(kept["id"].size, **kept)
+
+    def sorted(self, order, buffers):
+        """The particles in `order` (n,) with derived fields of zero, in arrays kept in the dict `buffers`.
+
+        What an earlier call with the same buffers returned is void.
+        """
+        out = Particles.__new__(Particles)
+        for name in NAMES:
+            room = buffers.get(name)
+            if room is None or room.size < order.size:
+                room = buffers[name] = np.empty(int(1.1 * order.size), _DTYPES[name])
+            field = room[: order.size]
+            if name in KEPT:
+                np.take(getattr(self, name), order, out=field, mode="clip")
+            else:
+                field[:] = 0
+            setattr(out, name, field)
+        return out
 
     def pack(self):
         """Kept fields as one uint8 buffer, for a message."""

@@ -41,7 +41,7 @@ def listed(every, size, radius, periodic=(False, False, False)):
     domain = Domain(grid, Comm(periodic[0]), [Fixed(every.take(~fluid))])
     domain.rebuild(every.take(fluid), 0.0)
     near = Neighbours(32)
-    near.build(domain.particles, domain.first, grid, domain.own, radius)
+    near.build(domain, radius)
     return domain, near
 
 

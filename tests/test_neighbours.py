@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from clouds import cloud, lattice, listed
 
-from parsim.cells import REACH, Grid, occupied, sort_by_cell, spread
+from parsim.cells import HALO, LAYERS, REACH, Grid, Stack, occupied, sort_by_cell, sort_key, spread
 from parsim.domain import even_cuts
 from parsim.neighbours import cut_rows, hidden
 from parsim.state import FLUID, GATE_DOWN, GATE_UP, Particles
@@ -22,13 +22,37 @@ def test_points_on_the_sides_of_cells_belong_to_the_upper_cell():
     grid = Grid([0, 0, 0], [1.0, 1.0, 1.0], 0.5, (False, False, False))
     assert grid.edge.tolist() == [0.25] * 3
     x = np.array([0.0, 0.25, 0.5, 0.75, np.nextafter(0.5, 0), 1.0, -0.1])
-    assert grid.layer(x).tolist() == [0, 1, 2, 3, 1, 3, 0]
-    assert grid.cell(x, 0 * x, 0 * x).tolist() == [16 * k for k in (0, 1, 2, 3, 1, 3, 0)]
+    assert grid.layer(x).tolist() == [LAYERS * k for k in (0, 1, 2, 3)] + [2 * LAYERS - 1, 4 * LAYERS - 1, 0]
+    assert grid.cell(np.zeros(7, np.int64), x, 0 * x).tolist() == [4 * k for k in (0, 1, 2, 3, 1, 3, 0)]
+    assert grid.cell(np.full(7, 2), 0 * x, x).tolist() == [32 + k for k in (0, 1, 2, 3, 1, 3, 0)]
+
+
+@pytest.mark.parametrize("begin, end", [(0, 32), (3, 21), (8, 29), (5, 40)])
+def test_a_stack_keeps_halos_and_owned_layers_in_pieces_of_their_own(begin, end):
+    stack = Stack(begin, end)
+    owner = np.repeat([0, 1, 2], [HALO, end - begin, HALO])
+    column = np.arange(begin - HALO, end + HALO) // LAYERS
+    parts = sorted(set(zip(column, owner, strict=True)))
+    assert stack.piece.tolist() == [parts.index(part) for part in zip(column, owner, strict=True)]
+    assert stack.column.tolist() == [part[0] - column[0] for part in parts]
+    assert [parts[k][1] for k in range(*stack.own.indices(99))] == [1] * (stack.own.stop - stack.own.start)
+    for k in range(stack.pieces.size - 1):
+        assert (stack.column[stack.pieces[k] : stack.pieces[k + 1]] == k).all()
+    assert stack.pieces[-1] == len(parts)
+
+
+def test_a_part_of_a_cell_is_sorted_like_the_whole():
+    rng = np.random.default_rng(3)
+    layer, ident = rng.integers(LAYERS, 2 * LAYERS, 40), rng.permutation(40)
+    order, _ = sort_by_cell(np.zeros(40, np.int64), sort_key(layer, ident), 1)
+    part = layer < LAYERS + 3
+    below, _ = sort_by_cell(np.zeros(part.sum(), np.int64), sort_key(layer[part], ident[part]), 1)
+    assert ident[order][: part.sum()].tolist() == ident[part][below].tolist()
 
 
 def test_periodic_edges_divide_the_period_and_leave_room_for_images():
     grid = Grid([0, 0, 0], [1.0, 1.0, 0.9], 0.37, (True, False, True))
-    assert grid.layers == 5 and grid.count.tolist() == [5, 5, 4 + 2 * REACH]
+    assert grid.layers == 5 * LAYERS and grid.count.tolist() == [5, 5, 4 + 2 * REACH]
     assert grid.edge[2] * 4 == pytest.approx(0.9)
 
 
@@ -39,11 +63,8 @@ def test_marks_spread_as_a_cube():
     assert grown[:, :3, 1:6].all() and grown.sum() == 5 * 3 * 5
 
 
-def test_occupied_finds_the_cells_of_points():
-    grid = Grid([0, 0, 0], [1.0, 1.0, 1.0], 0.5, (False, False, False))
-    x, y, z = np.array([0.1, 0.9]), np.array([0.3, 0.9]), np.array([0.6, 0.9])
-    marks = occupied(x, y, z, grid.origin, grid.edge, grid.count, 1, 3)
-    assert marks.sum() == 1 and marks[2, 3, 3] == 1
+def test_occupied_finds_the_cells_of_particles():
+    assert occupied(np.array([3, 1, 3]), 5).tolist() == [0, 1, 0, 1, 0]
 
 
 def naive(p, i, radius, size, periodic):
@@ -123,10 +144,10 @@ def test_each_side_of_the_gate_meets_its_own_samples_only():
 
 
 def test_cuts_split_the_work_evenly_and_leave_room_for_halos():
-    work = np.array([0, 0, 5, 5, 5, 5, 1, 1, 1, 1, 1, 1])
-    assert even_cuts(work, 2).tolist() == [0, 5, 12]
-    assert even_cuts(np.array([100, 0, 0, 0, 0, 0]), 3).tolist() == [0, 2, 4, 6]
-    assert (np.diff(even_cuts(np.ones(97, np.int64), 8)) >= REACH).all()
+    work = np.array([0, 0, 5, 5, 5, 5, 1, 1, 1, 1, 1, 1]).repeat(HALO)
+    assert even_cuts(work, 2).tolist() == [0, round(4.6 * HALO), 12 * HALO]
+    assert even_cuts(np.arange(3 * HALO) == 0, 3).tolist() == [0, HALO, 2 * HALO, 3 * HALO]
+    assert (np.diff(even_cuts(np.ones(8 * HALO + 1, np.int64), 8)) >= HALO).all()
 
 
 def test_pack_and_unpack_keep_every_kept_field():
