@@ -29,6 +29,11 @@ class Comm:
 
     def exchange_fixed(self, to_left, to_right, from_left, from_right):
         """The same into given buffers whose lengths the ranks already know; returns the two buffers."""
+        self.wait(self.start(to_left, to_right, from_left, from_right))
+        return from_left, from_right
+
+    def start(self, to_left, to_right, from_left, from_right):
+        """Begin to exchange buffers of known lengths; none may be touched before `wait` has had what this returns."""
         requests = []
         if self.left is not None:
             requests.append(self._mpi.Irecv(from_left, self.left, tag=1))
@@ -38,8 +43,11 @@ class Comm:
             requests.append(self._mpi.Isend(to_left, self.left, tag=2))
         if self.right is not None:
             requests.append(self._mpi.Isend(to_right, self.right, tag=1))
+        return requests
+
+    def wait(self, requests):
+        """End what `start` has begun."""
         MPI.Request.Waitall(requests)
-        return from_left, from_right
 
     def sum_integers(self, array):
         """All-reduced sum of an int64 array, exact in any order."""

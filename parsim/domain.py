@@ -5,14 +5,17 @@ left halo | owned | right halo, each sorted by (cell, layer, id), so that a part
 order on any number of ranks.
 """
 
+from contextlib import contextmanager
+
 import numpy as np
 
 from parsim import exact
 from parsim.cells import HALO, LAYERS, REACH, Stack, holding, occupied, sort_by_cell, sort_key, spread
 from parsim.jit import kernel
 from parsim.state import POSITION, Particles
+from parsim.timers import Timers
 
-_UNEVEN = 1.02  # largest share of the work over the mean that leaves the cuts alone
+_UNEVEN = 1.01  # largest work of a rank over the mean that leaves the cuts alone
 
 
 class Slab:
@@ -45,11 +48,14 @@ class Domain:
     """One rank's slab.
 
     `particles` holds halos and owned, `own` the slice of owned ones, `stack` the pieces they are stored in, `first` the
-    offsets of the cells of all pieces.
+    offsets of the cells of all pieces, `border` (owned,) bool those that may see a halo. `uneven` is the largest work
+    of a rank over the mean, as `balance` has seen it last.
     """
 
-    def __init__(self, grid, comm, sources, cuts=None):
+    def __init__(self, grid, comm, sources, cuts=None, timers=None):
         self.grid, self.comm, self.sources = grid, comm, sources
+        self.timers = timers or Timers()
+        self.uneven = 1.0
         self.cuts = np.linspace(0, grid.layers, comm.size + 1).round().astype(np.int64) if cuts is None else cuts
         self.lost = 0
         self._buffers = {}
@@ -72,26 +78,31 @@ class Domain:
 
     def refresh(self, *names):
         """Bring `names` up to date in the images and halos."""
+        with self.refreshing(*names):
+            pass
+
+    @contextmanager
+    def refreshing(self, *names):
+        """The same, with the halos only up to date at the end of the block, which runs while the messages travel.
+
+        The block may not write the fields `names`, nor look at them in a halo.
+        """
         p = self.particles
-        for name in names:
-            shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
-            copy_images(getattr(p, name), self._image_at, self._image_of, shift)
-        count = len(names)
-        to_left = np.empty((count, self._send_left.size))
-        to_right = np.empty((count, self._send_right.size))
-        from_left = np.empty((count, self.own.start))
-        from_right = np.empty((count, len(p) - self.own.stop))
-        for k, name in enumerate(names):
-            to_left[k] = getattr(p, name)[self._send_left]
-            to_right[k] = getattr(p, name)[self._send_right]
-        self.comm.exchange_fixed(to_left, to_right, from_left, from_right)
-        for k, name in enumerate(names):
-            field = getattr(p, name)
-            field[: self.own.start] = from_left[k]
-            field[self.own.stop :] = from_right[k]
-            if name == "x":
-                field[: self.own.start] += self._period_left
-                field[self.own.stop :] += self._period_right
+        with self.timers("halo"):
+            for name in names:
+                shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
+                copy_images(getattr(p, name), self._image_at, self._image_of, shift)
+            ends = (slice(0, self.own.start), slice(self.own.stop, len(p)))
+            out = [np.stack([getattr(p, name)[at] for name in names]).astype(float, copy=False)
+                   for at in (self._send_left, self._send_right)]
+            back = [np.empty((len(names), at.stop - at.start)) for at in ends]
+            requests = self.comm.start(*out, *back)
+        yield
+        with self.timers("halo"):
+            self.comm.wait(requests)
+            for at, values, shift in zip(ends, back, (self._period_left, self._period_right), strict=True):
+                for name, row in zip(names, values, strict=True):
+                    getattr(p, name)[at] = row + shift if name == "x" else row
 
     def near(self, value, name):
         """Which particles may have a neighbour whose field `name` is `value`, by cells: bool (particles,)."""
@@ -119,15 +130,16 @@ class Domain:
         """Largest over all ranks, element by element."""
         return self.comm.max(values)
 
-    def balance(self, lengths):
-        """Move the cuts to equal work, counted as listed pairs, `lengths` (particles,); the next rebuild acts on it."""
-        layer = self.grid.layer(self.particles.x[self.own])
-        work = np.zeros(self.grid.layers, np.int64)
-        accumulate(layer, lengths[self.own] + 8, work)
-        work = self.comm.sum_integers(work)
-        shares = np.add.reduceat(work, self.cuts[:-1])
-        if shares.max() * self.comm.size > _UNEVEN * work.sum():
-            self.cuts = even_cuts(work, self.comm.size)
+    def balance(self, work, move):
+        """Compare the work (owned,) int64 of the ranks; if it is uneven and `move`, the next rebuild has other cuts."""
+        layers = np.zeros(self.grid.layers, np.int64)
+        accumulate(self.grid.layer(self.particles.x[self.own]), work, layers)
+        layers = self.comm.sum_integers(layers)
+        self.uneven = _uneven(layers, self.cuts)
+        if move and self.uneven > _UNEVEN:
+            cuts = even_cuts(layers, self.comm.size)
+            if _uneven(layers, cuts) < self.uneven:
+                self.cuts = cuts
 
     def _wrap(self, fluid):
         """Periodic positions back into the box; what left the grid is counted as lost and taken out."""
@@ -223,6 +235,11 @@ class Domain:
         stored = stored[order][self.own]
         self._send_left = self.own.start + np.flatnonzero(stored < begin + HALO)
         self._send_right = self.own.start + np.flatnonzero(stored >= end - HALO)
+        self.border = np.zeros(stored.size, bool)
+        if self.comm.left is not None:
+            self.border |= stored < begin + HALO
+        if self.comm.right is not None:
+            self.border |= stored >= end - HALO
         self._note_images()
 
     def _note_images(self):
@@ -240,6 +257,12 @@ class Domain:
             field = getattr(p, name)
             offset = field[self._image_at] - field[self._image_of]
             self._image_shift.append(np.rint(offset / period) * period if period else self._no_shift)
+
+
+def _uneven(work, cuts):
+    """Largest work of a rank over the mean: work (layers,), cuts (ranks + 1,)."""
+    shares = np.add.reduceat(work, cuts[:-1])
+    return float(shares.max() / max(shares.mean(), 1.0))
 
 
 def even_cuts(work, ranks):

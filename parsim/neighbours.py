@@ -14,21 +14,22 @@ _TALL = 2  # cells of a block, one above the other
 _BLOCKS_PER_TASK = 32
 _BOUNDARY = 0.6  # length of a row of a boundary particle, which holds fluid only, over that of a fluid one
 _ROOM = 1.05
+_BOUNDARY_PAIR, _PARTICLE = 3, 25  # pairs of walls and gate that cost as much as one of water; the rest, in such pairs
 
 
 class Neighbours:
     """Lists of one rank: row i holds index[start[i]:middle[i]] fluid and index[middle[i]:end[i]] boundary particles.
 
-    `fluid` and `boundary` are the owned particles (int64 indices) that have neighbours to look at; `body` those of
-    `boundary` that sample a rigid body. Rows of boundary particles hold fluid only. Rows are packed: `expected` is the
-    length that they get room for on average.
+    `fluid` and `boundary` are the owned particles (int64 indices) that have neighbours to look at; `inner` and `border`
+    are the `fluid` that cannot and that may see a halo; `body` those of `boundary` that sample a rigid body. Rows of
+    boundary particles hold fluid only. Rows are packed: `expected` is the length that they get room for on average.
     """
 
     def __init__(self, expected):
         self.expected = float(expected)
         self.start = self.middle = self.end = np.zeros(0, np.int64)
         self.index = np.zeros(0, np.uint32)
-        self.fluid = self.boundary = self.body = np.zeros(0, np.int64)
+        self.fluid = self.inner = self.border = self.boundary = self.body = np.zeros(0, np.int64)
 
     def build(self, domain, radius):
         """Fill the lists of the owned particles of a `domain` that has just been rebuilt, up to `radius` m."""
@@ -48,16 +49,24 @@ class Neighbours:
             if not full.any():
                 break
             self.expected *= 1.1
-        self._sort_rows(p, domain.own)
+        self._sort_rows(p, domain.own, domain.border)
+
+    def work(self, p, owned):
+        """Cost of the owned particles in one step, in listed fluid pairs: int64 (owned,)."""
+        pairs = (self.end - self.start)[owned]
+        seen_once = (p.kind[owned] != FLUID) & (p.body[owned] < 0)
+        return np.where(seen_once, pairs // _BOUNDARY_PAIR, pairs) + _PARTICLE
 
     def _offsets(self, rows, room):
         """Where the rows of each task begin, and the end of the last: (tasks + 1,) int64."""
         lengths = np.ceil(self.expected * (rows[:, 0] + _BOUNDARY * rows[:, 1])).astype(np.int64) + room
         return np.concatenate([[0], np.cumsum(lengths)])
 
-    def _sort_rows(self, p, owned):
+    def _sort_rows(self, p, owned, border):
         real = np.arange(owned.start, owned.stop)[p.image[owned] == 0]
         self.fluid = real[p.kind[real] == FLUID]
+        edge = border[self.fluid - owned.start]
+        self.inner, self.border = self.fluid[~edge], self.fluid[edge]
         self.boundary = real[(p.kind[real] != FLUID) & (self.end[real] > self.start[real])]
         self.body = self.boundary[p.body[self.boundary] >= 0]
 

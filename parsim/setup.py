@@ -42,9 +42,9 @@ def _reach(case):
 class Models:
     """The models of one case, as attributes: scheme, bodies, contacts, gate, samples, films, domain, near."""
 
-    def __init__(self, case, comm):
+    def __init__(self, case, comm, timers):
         layers, self.reach = _layers(case), _reach(case)
-        self.scheme = WCMPS(case)
+        self.scheme = WCMPS(case, timers)
         self.bodies = from_case(case)
         self.contacts = Contacts(self.bodies, case)
         self.samples = BodySamples(case, self.bodies, layers)
@@ -53,7 +53,7 @@ class Models:
         self.gate = Gate(case) if case.gate is not None else None
         self.gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         sources = [s for s in (self.samples, self.gate_samples, self.walls) if s is not None]
-        self.domain = Domain(grid_of(case, layers, self.reach), comm, sources)
+        self.domain = Domain(grid_of(case, layers, self.reach), comm, sources, timers=timers)
         share = (1.0 + case.run.skin / case.water.support) ** case.dimensions
         self.near = Neighbours(self.scheme.lattice.count * share * _ROOM)
 

@@ -20,12 +20,13 @@ class Simulation:
 
     def __init__(self, case, comm, cuts=None):
         self.case, self.comm, self.timers = case, comm, Timers()
-        models = self.models = Models(case, comm)
+        models = self.models = Models(case, comm, self.timers)
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
         self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
         if cuts is not None:
             self.domain.cuts = cuts
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
+        self._uneven_sum, self._uneven_most = 0.0, 1.0
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
         fluid = water(case, self.bodies, self.scheme)
         mine = self.domain.grid.layer(fluid.x)
@@ -38,6 +39,11 @@ class Simulation:
         """This rank's fluid particles, without images: Particles, kept fields."""
         return self.domain.particles.take(self.near.fluid)
 
+    @property
+    def uneven(self):
+        """Largest work of a rank over the mean before each rebuild: the mean of that, and the most."""
+        return self._uneven_sum / max(self.rebuilds - 1, 1), self._uneven_most
+
     def step(self):
         """Advance water and bodies by one time step."""
         self.dt = dt = min(self.scheme.time_step(self.speed), self.contacts.limit())
@@ -46,12 +52,11 @@ class Simulation:
         keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
         force = self._half_step(dt)
         self._move(force, dt, keep)
-        with self.timers("continuity"):
-            self.scheme.finish(self.domain, self.near, dt, self.speed)
+        self.scheme.finish(self.domain, self.near, dt, self.speed)
         self.time += dt
         self.step_count += 1
         self.since += 1
-        with self.timers("sums"):
+        with self.domain.refreshing(*self.scheme.STATE):
             self._look()
 
     def _half_step(self, dt):
@@ -60,8 +65,7 @@ class Simulation:
         with self.timers("predict"):
             self._place(*self.bodies.drifted(0.5 * dt), time)
             self.scheme.predict(p, dt)
-        with self.timers("momentum"):
-            self.scheme.accelerate(self.domain, near, dt)
+        self.scheme.accelerate(self.domain, near, dt)
         with self.timers("bodies"):
             return self._load(dt)
 
@@ -81,7 +85,6 @@ class Simulation:
             self.scheme.kick(self.domain.particles, self.near, dt, keep)
             if load is not None:
                 self.models.samples.keep_out(self.domain.particles, self.near, *self.bodies.drifted(0.5 * dt))
-            self.scheme.drift(self.domain, dt)
         with self.timers("contacts"):
             if load is not None:
                 self.contacts.step(self.bodies, load, self.time, dt)
@@ -106,8 +109,11 @@ class Simulation:
     def _rebuild(self, fluid):
         domain, near = self.domain, self.near
         with self.timers("rebuild"):
-            if self.rebuilds and self.rebuilds % self.case.run.balance_every == 0:
-                domain.balance(near.end - near.start)
+            if self.rebuilds:
+                domain.balance(near.work(domain.particles, domain.own),
+                               self.rebuilds % self.case.run.balance_every == 0)
+                self._uneven_sum += domain.uneven
+                self._uneven_most = max(self._uneven_most, domain.uneven)
             domain.rebuild(fluid, self.time)
         with self.timers("neighbours"):
             near.build(domain, self.models.reach)
@@ -126,8 +132,10 @@ class Simulation:
 
     def _look(self):
         """Largest speed, and how far anything has moved since the lists were built."""
-        fastest, moved = self.scheme.extremes(self.domain.particles, self.near, self._start)
-        fastest, moved = map(float, self.domain.max(fastest, moved))
+        with self.timers("move"):
+            fastest, moved = self.scheme.extremes(self.domain.particles, self.near, self._start)
+        with self.timers("sums"):
+            fastest, moved = map(float, self.domain.max(fastest, moved))
         if not fastest < self.scheme.sound:
             raise FloatingPointError(f"step {self.step_count}, t = {self.time:.6g} s: the water reached {fastest:g} "
                                      f"m/s, the speed of sound of the model is {self.scheme.sound:g} m/s")

@@ -1,7 +1,8 @@
 """Weakly compressible MPS (Mellado 2021, ch. 5; Jandaghian & Shakibaeinia 2020), explicit, symplectic in time.
 
 One momentum and one continuity sweep a step. A step is three calls, between which the bodies move: `predict` to the
-half step, `accelerate` there, `kick` and `drift` from there, `finish` at the full step.
+half step, `accelerate` there, `kick` and `finish` from there to the full step. Particles that see no halo are swept
+while the messages to the neighbouring slabs travel.
 """
 
 import math
@@ -11,6 +12,7 @@ import numpy as np
 from parsim.fluid import kernels, surface
 from parsim.fluid.weights import Lattice
 from parsim.state import SURFACE
+from parsim.timers import Timers
 
 _LOWEST, _HIGHEST = 0.4, 0.9  # concentrations below which a particle is detached, above which never at the surface
 _VICINITY = 2.1  # in spacings
@@ -21,8 +23,11 @@ _LARGEST_MACH = 0.2
 class WCMPS:
     """The scheme for one case: constants, and the sweeps in their order."""
 
-    def __init__(self, case):
+    STATE = ("x", "y", "z", "n", "rate")  # what the halos need of the full step
+
+    def __init__(self, case, timers=None):
         water = case.water
+        self.timers = timers or Timers()
         self.lattice = Lattice(case.dimensions, case.spacing, water.support)
         self.density, self.sound, self.gravity = water.density, case.sound_speed, case.gravity
         self.stiffness = self.sound**2 * water.density / 7.0
@@ -51,15 +56,22 @@ class WCMPS:
     def accelerate(self, domain, near, dt):
         """Boundary pressures, then pair accelerations, concentration and surface of the fluid, at the half step."""
         p, lattice = domain.particles, self.lattice
-        kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.ax, p.ay, p.az,
-                                  p.scale, *self.gravity, self.density, lattice.radius, lattice.number,
-                                  self.stiffness, p.n, p.p, p.q)
-        domain.refresh("n", "q")
-        kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
-                         p.q, p.scale, lattice.radius, self.close2, self._push, self._drag, self._hit(dt),
-                         lattice.number, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz)
-        surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, lattice.spacing, _LOWEST,
-                         _HIGHEST, p.surface, p.nx, p.ny, p.nz)
+        with self.timers("boundary"):
+            kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.ax, p.ay,
+                                      p.az, p.scale, *self.gravity, self.density, lattice.radius, lattice.number,
+                                      self.stiffness, p.n, p.p, p.q)
+        with domain.refreshing("n", "q"):
+            self._momentum(p, near, near.inner, dt)
+        self._momentum(p, near, near.border, dt)
+        with self.timers("surface"):
+            surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, lattice.spacing, _LOWEST,
+                             _HIGHEST, p.surface, p.nx, p.ny, p.nz)
+
+    def _momentum(self, p, near, at, dt):
+        with self.timers("momentum"):
+            kernels.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n, p.q,
+                             p.scale, self.lattice.radius, self.close2, self._push, self._drag, self._hit(dt),
+                             self.lattice.number, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz)
 
     def react(self, domain, near, dt):
         """Forces of the water on the body samples `near.body`, N: (samples, 3)."""
@@ -77,24 +89,32 @@ class WCMPS:
         """Velocities to the full step; `keep` is the share of velocity kept (1 but when settling)."""
         kernels.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
 
-    def drift(self, domain, dt):
-        """Positions from the half to the full step."""
-        p = domain.particles
-        domain.refresh("u", "v", "w", "c", "nx", "ny", "nz", "surface")
-        kernels.drift(p.kind, p.u, p.v, p.w, 0.5 * dt, p.x, p.y, p.z)
-
     def finish(self, domain, near, dt, speed):
-        """Continuity at the full step, then shifting."""
-        p, lattice = domain.particles, self.lattice
+        """Positions to the full step, continuity there, then shifting; `STATE` is left to be refreshed."""
+        p, own = domain.particles, domain.own
+        with domain.refreshing("u", "v", "w", "c", "nx", "ny", "nz", "surface"):
+            self._drift(p, own, dt)
+            self._continuity(p, near, near.inner, speed)
+        for halo in (slice(0, own.start), slice(own.stop, len(p))):
+            self._drift(p, halo, dt)
+        self._continuity(p, near, near.border, speed)
+        with self.timers("move"):
+            kernels.grow(p.kind[own], p.rate[own], 0.5 * dt, p.n[own])
+        if self.shifting:
+            with self.timers("shifting"):
+                self._shift(domain, near, dt, speed)
+
+    def _drift(self, p, at, dt):
+        with self.timers("move"):
+            kernels.drift(p.kind[at], p.u[at], p.v[at], p.w[at], 0.5 * dt, p.x[at], p.y[at], p.z[at])
+
+    def _continuity(self, p, near, at, speed):
         slope = [g / self.sound**2 for g in self.gravity]
         spread = self.diffusion * self.sound**2 * self.time_step(speed) / self.cfl * self._laplacian
-        kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w,
-                           p.n, p.c, p.scale, lattice.radius, lattice.number, self._gradient, spread, *slope, p.rate,
-                           p.ax, p.ay, p.az)
-        kernels.grow(p.kind[domain.own], p.rate[domain.own], 0.5 * dt, p.n[domain.own])
-        if self.shifting:
-            self._shift(domain, near, dt, speed)
-        domain.refresh("x", "y", "z", "n", "rate")
+        with self.timers("continuity"):
+            kernels.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
+                               p.c, p.scale, self.lattice.radius, self.lattice.number, self._gradient, spread, *slope,
+                               p.rate, p.ax, p.ay, p.az)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice

@@ -169,6 +169,7 @@ class Recorder:
             "status": "done", "steps": simulation.step_count, "time": simulation.time, "wall_s": wall,
             "lost": counts["lost"], "leaks": {k: counts[k] for k in ("in_walls", "in_bodies", "in_gate")},
             "phases": dict(simulation.timers.seconds), "rebuilds": simulation.rebuilds,
+            "uneven": dict(zip(("mean", "most"), simulation.uneven, strict=True)),
             "rate": {"active_particle_steps_per_s_per_core": self.progress.work / wall / cores,
                      "active_particle_steps": self.progress.work, "all": counts["all"]},
         }
