@@ -118,17 +118,24 @@ def run(
     force: Annotated[bool, typer.Option("--force", help="overwrite an output folder")] = False,
     threads: Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")] = None,
     ranks: Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")] = None,
+    kernel: Annotated[str | None, typer.Option(metavar="NAME", help="kernel variant, in place of the fastest")] = None,
 ):
     """Run a case. Under mpirun or srun every rank runs this command."""
+    from parsim import variant
+
     if threads:
         os.environ["NUMBA_NUM_THREADS"] = str(threads)
     loaded = _load(case, changes, until)
+    if kernel is not None:
+        os.environ[variant.NAME] = variant.checked(kernel)
     if ranks:
         words = ["run", case, "-o", out, *(word for change in changes or () for word in ("--set", change))]
-        return _launched(ranks, words + (["--until", repr(until)] if until is not None else []) + ["--force"] * force)
+        words += ["--until", repr(until)] if until is not None else []
+        words += ["--kernel", kernel] if kernel is not None else []
+        return _launched(ranks, words + ["--force"] * force)
     from parsim.warm import prepare
 
-    prepare()  # before the solver brings up MPI
+    prepare()
     from parsim.solver import run as solve
 
     return solve(loaded, case, out, force)
@@ -195,6 +202,17 @@ def report(out: Folder):
     from parsim.report import main as reported
 
     return reported(out)
+
+
+@command
+def bench(
+    as_json: Annotated[bool, typer.Option("--json", help="print every figure as JSON")] = False,
+    with_model: Annotated[bool, typer.Option("--model", help="fit and print the cost model instead")] = False,
+):
+    """Measure what parsim does on this machine: speed, balance, memory, start-up. Takes some ten minutes."""
+    from parsim.bench import main as benched
+
+    return benched(as_json, with_model)
 
 
 @command

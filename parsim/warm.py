@@ -11,7 +11,7 @@ import sys
 import time
 from pathlib import Path
 
-from parsim import jit, launch
+from parsim import launch, variant
 
 PATIENCE = 900.0  # s that a rank waits for another one's compiler
 _FOREIGN = ("OMPI_", "PMIX", "PMI_", "PRTE", "SLURM_")  # the compiler is no rank of the job
@@ -27,7 +27,16 @@ _CASE = {
 
 
 def prepare():
-    """Return when the kernels are in the cache; the first rank of each machine has them compiled if they are not."""
+    """Choose the kernel variant, if none is named yet, and return when its machine code is in the cache.
+
+    Rank 0 chooses for all. The first rank of each machine has compiled what is missing. Raises InputError for a variant
+    that this processor does not have.
+    """
+    from parsim.comm import Comm
+
+    comm = Comm()
+    os.environ[variant.NAME] = variant.checked(comm.share(_chosen() if comm.rank == 0 else None))
+    variant.apply()
     mark = _mark()
     if mark is None or mark.exists():
         return
@@ -45,6 +54,17 @@ def prepare():
         time.sleep(0.1)
 
 
+def _chosen():
+    name = variant.chosen()
+    if name is None:
+        from parsim.probe import fastest
+
+        print("choosing the kernel variant: once per kind of processor", flush=True)
+        name = fastest()
+        variant.remember(name)
+    return name
+
+
 def _mark():
     """The file that says that the cache is complete; None where the cache cannot be written."""
     folder = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
@@ -52,11 +72,11 @@ def _mark():
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return None
-    return folder / f"complete-{jit.variant()}" if os.access(folder, os.W_OK) else None
+    return folder / f"complete-{variant.code()}" if os.access(folder, os.W_OK) else None
 
 
-def _compile():
-    """Run a small case with everything in it for a few steps, which compiles and caches every kernel."""
+def exercise():
+    """Run a small case with everything in it for a few steps, which compiles and caches, or loads, every kernel."""
     from parsim.case import parse
     from parsim.comm import Comm
     from parsim.output.measure import Measure
@@ -70,4 +90,4 @@ def _compile():
 
 
 if __name__ == "__main__":
-    _compile()
+    exercise()

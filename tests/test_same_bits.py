@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import parsim
-from parsim import jit
+from parsim import variant
 from parsim.__main__ import main
 
 HERE = Path(__file__).parent
@@ -42,11 +42,11 @@ def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monk
 @pytest.mark.parametrize("change", [lambda path: os.utime(path, (1, 1)), lambda path: path.write_text("parsim.jit 2")])
 def test_changed_sources_get_a_cache_of_their_own(change, tmp_path, monkeypatch):
     (tmp_path / "kernels.py").write_text("import parsim.jit")
-    monkeypatch.setattr(jit, "__file__", str(tmp_path / "jit.py"))
-    before = jit.variant()
-    assert jit.variant() == before
+    monkeypatch.setattr(variant, "__file__", str(tmp_path / "variant.py"))
+    before = variant.code()
+    assert variant.code() == before
     change(tmp_path / "kernels.py")
-    assert jit.variant() != before
+    assert variant.code() != before
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from parsim import __version__
+from parsim import __version__, variant
 from parsim.errors import InputError, WriteError
 from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
 from parsim.output.measure import Measure
@@ -181,8 +181,7 @@ class Recorder:
         return {
             "case_name": self.source.stem, "ranks": self.comm.size, "threads": numba.get_num_threads(),
             "host": platform.node(), "warnings": list(self.case.warnings()),
-            "kernel": f"{os.environ.get('NUMBA_CPU_NAME', 'host')} "
-                      + ("no gather" if "prefer-no-gather" in os.environ.get("NUMBA_CPU_FEATURES", "") else "gather"),
+            "kernel": variant.chosen(), "processor": os.environ.get("NUMBA_CPU_NAME", "host"),
             "versions": {"python": platform.python_version(), "mpi": self.comm.library,
                          **{name: version(name) for name in ("numpy", "numba", "h5py", "mpi4py")}},
             "particles": {"fluid": simulation.fluid_count, "active": simulation.active,

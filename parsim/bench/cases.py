@@ -1,0 +1,33 @@
+"""The cases of the benchmark, as nested dicts of a case file."""
+
+_WOOD = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}
+
+
+def still_water(count, support):
+    """A cube of about `count` particles of water at rest in a tank."""
+    edge, l0 = round(count ** (1 / 3)), 0.01
+    size = round(edge * l0, 9)
+    return _case(support, l0, [size, size, round(size + 5 * l0, 9)], [{"min": [0.0, 0.0, 0.0], "max": [size] * 3}])
+
+
+def dam_break(spacing, support, speed=0.0, until=1.0):
+    """A cube of water, 15 cm high, that runs down a tank of 75 cm; `speed` (m/s) is what it has at the start."""
+    column = {"min": [0.0, 0.0, 0.0], "max": [0.15, 0.15, 0.15], "velocity": [speed, 0.0, 0.0]}
+    return _case(support, spacing, [0.75, 0.15, 0.3], [column], until)
+
+
+def floating_blocks(spacing, support):
+    """Four blocks on 15 cm of water behind a gate that rises: the ice release of Amaro et al. (2021), case 1."""
+    case = _case(support, spacing, [0.7, 0.15, 0.3], [{"min": [0.0, 0.0, 0.0], "max": [0.15, 0.15, 0.15]}])
+    case["gate"] = {"min_x": 0.15, "max_x": 0.155}
+    case["materials"] = {"wood": _WOOD}
+    case["bodies"] = [
+        {"name": f"block_{row}{column}", "shape": {"size": [0.0725, 0.0725, 0.0195]}, "mass": 0.089, "material": "wood",
+         "position": [0.038 + 0.074 * column, 0.038 + 0.074 * row, "float"]} for row in (0, 1) for column in (0, 1)
+    ]  # fmt: skip
+    return case
+
+
+def _case(support, spacing, size, fill, until=100.0):
+    return {"dimensions": 3, "spacing": spacing, "box": {"max": size}, "run": {"until": until},
+            "water": {"support": support, "fill": fill}}

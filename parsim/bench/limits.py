@@ -1,0 +1,90 @@
+"""Single sweeps, timed, and what bounds them: the reading of the neighbours' fields, and the arithmetic."""
+
+import time
+
+import numpy as np
+
+from parsim.fluid import kernels
+from parsim.jit import prange, rows
+from parsim.state import FLUID
+
+
+@rows
+def gathers(at, start, end, index, x, y, z, u, v, w, n, q, out):
+    """Nothing but the reading of eight fields of all neighbours: out (particles,) is their sum."""
+    for row in prange(at.size):
+        i = at[row]
+        total = 0.0
+        for t in range(np.uint64(start[i]), np.uint64(end[i])):
+            j = index[t]
+            total += ((x[j] + y[j]) + (z[j] + u[j])) + ((v[j] + w[j]) + (n[j] + q[j]))
+        out[i] = total
+
+
+@rows
+def true_pairs(at, start, end, index, x, y, z, radius2, out):
+    """Number of listed neighbours within the support: out (particles,)."""
+    for row in prange(at.size):
+        i = at[row]
+        count = 0
+        for t in range(np.uint64(start[i]), np.uint64(end[i])):
+            j = index[t]
+            dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+            count += dx * dx + dy * dy + dz * dz < radius2
+        out[i] = count
+
+
+def sweeps(simulation, calls):
+    """Nanoseconds per true pair of each sweep over the fluid, of its gathers alone, and of it with all data in cache.
+
+    `listed` is the number of listed pairs over that of true ones.
+    """
+    domain, near, scheme = simulation.domain, simulation.near, simulation.scheme
+    p, radius = domain.particles, scheme.lattice.radius
+    lists = near.fluid, near.start, near.middle, near.end
+    place, flow = (p.x, p.y, p.z), (p.u, p.v, p.w)
+    count = np.zeros(len(p))
+    true_pairs(near.fluid, near.start, near.end, near.index, *place, radius**2, count)
+    pairs = int(count.sum())
+    listed = int((near.end - near.start)[near.fluid].sum())
+    close = _neighbours_in_cache(near, p)
+    out = [np.zeros(len(p)) for _ in range(8)]
+
+    def momentum(index):
+        kernels.momentum(*lists, index, *place, *flow, p.n, p.q, p.scale, radius, scheme.close2, 1.0, 1.0, 1.0,
+                         scheme.lattice.number, *out[:7])
+
+    def continuity(index):
+        kernels.continuity(*lists, index, *place, *flow, p.n, p.c, p.scale, radius, scheme.lattice.number, 1.0, 1.0,
+                           0.0, 0.0, 0.0, *out[:4])
+
+    works = {
+        "momentum": lambda: momentum(near.index),
+        "continuity": lambda: continuity(near.index),
+        "momentum_in_cache": lambda: momentum(close),
+        "continuity_in_cache": lambda: continuity(close),
+        "gathers": lambda: gathers(near.fluid, near.start, near.end, near.index, *place, *flow, p.n, p.q, out[0]),
+        "lists": lambda: near.build(domain, simulation.models.reach),
+    }
+    return {name: 1e9 * _least(work, calls) / pairs for name, work in works.items()} | {"listed": listed / pairs}
+
+
+def _neighbours_in_cache(near, p):
+    """Lists of the same lengths whose entries lie in a few hundred particles, never the row's own."""
+    some = np.flatnonzero(p.kind == FLUID)[:257].astype(np.uint32)
+    index = near.index.copy()
+    index[:] = some[np.arange(index.size) % some.size]
+    for i in near.fluid[:257]:
+        row = index[near.start[i] : near.end[i]]
+        row[row == i] = some[-1] if i != some[-1] else some[0]
+    return index
+
+
+def _least(work, calls):
+    work()
+    times = []
+    for _ in range(calls):
+        begin = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - begin)
+    return min(times)

@@ -1,0 +1,94 @@
+"""One measurement of the benchmark, in a process or job of its own: an order as JSON in, figures as JSON out.
+
+The order holds `case` (a nested dict) and may hold `warm` (steps before the clock runs), `steps` or `until` (s) to run,
+`kernels` (time single sweeps too) and `record` (write frames and series, at the intervals of the case).
+"""
+
+import json
+import resource
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from parsim.case import parse
+from parsim.comm import Comm
+from parsim.warm import exercise, prepare
+
+_WARM = 5  # steps
+_CALLS = 7  # of a single sweep; the fastest counts
+
+
+def measure(order):
+    """Run what the order asks for; returns the figures (dict), the same on all ranks but for times."""
+    case, comm = parse(order["case"]), Comm()
+    prepare()
+    from parsim.solver import Simulation
+
+    if order.get("warm", _WARM):
+        exercise()  # machine code is in memory before the particles are
+    before = _resident()
+    simulation = Simulation(case, comm)
+    with tempfile.TemporaryDirectory() as folder:
+        recorder = _recorder(case, comm, simulation, folder) if order.get("record") else None
+        _advance(simulation, recorder, max(order.get("warm", _WARM), 1))
+        first = time.time()
+        figures = _timed(simulation, recorder, order)
+    bytes_each = float(comm.max([_resident() - before])[0])
+    owned = float(comm.max([simulation.near.fluid.size + simulation.near.boundary.size])[0])
+    figures |= {"first_step": first, "bytes": bytes_each / owned, "peak_bytes": (_peak() - before) / owned}
+    return figures | ({"kernels": _kernels(simulation)} if order.get("kernels") else {})
+
+
+def _recorder(case, comm, simulation, folder):
+    from parsim.output.recorder import Recorder
+
+    recorder = Recorder(case, "bench", Path(folder) / "out", False, comm)
+    recorder.begin(simulation)
+    return recorder
+
+
+def _advance(simulation, recorder, steps):
+    for _ in range(steps):
+        simulation.step()
+        if recorder:
+            recorder.watch(simulation)
+
+
+def _timed(simulation, recorder, order):
+    """Wall seconds and active particle-steps of the steps asked for, with the seconds of each phase."""
+    until, steps = order.get("until", float("inf")), order.get("steps", sys.maxsize)
+    earlier, began, work, count = dict(simulation.timers.seconds), time.perf_counter(), 0, 0
+    rebuilds = simulation.rebuilds
+    while count < steps and simulation.time < until:
+        _advance(simulation, recorder, 1)
+        count += 1
+        work += simulation.active
+    wall = time.perf_counter() - began
+    phases = {name: spent - earlier.get(name, 0.0) for name, spent in simulation.timers.seconds.items()}
+    return {"wall_s": wall, "work": work, "steps": count, "rate": work / wall, "phases": phases,
+            "rebuilds": simulation.rebuilds - rebuilds, "active": simulation.active, "fluid": simulation.fluid_count,
+            "all": simulation.fluid_count + len(simulation.models.walls) + len(simulation.models.samples),
+            "uneven": simulation.uneven[0], "uneven_most": simulation.uneven[1]}
+
+
+def _resident():
+    """Resident memory of this process, bytes."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+
+def _peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def _kernels(simulation):
+    """Nanoseconds of each sweep per true pair of the fluid, and of what bounds them: see `parsim.bench.limits`."""
+    from parsim.bench import limits
+
+    return limits.sweeps(simulation, _CALLS)
+
+
+if __name__ == "__main__":
+    figures = measure(json.loads(sys.argv[1]))
+    if Comm().rank == 0:
+        print(json.dumps(figures), flush=True)
