@@ -65,6 +65,11 @@ class Domain:
         """First layer owned and the one past the last."""
         return int(self.cuts[self.comm.rank]), int(self.cuts[self.comm.rank + 1])
 
+    def owns(self, x):
+        """Which of the points x (n,) lie in this rank's slab: bool (n,)."""
+        layer = self.grid.layer(x)
+        return (layer >= self.layers[0]) & (layer < self.layers[1])
+
     def rebuild(self, fluid, time):
         """Take the owned fluid (Particles), migrate it, add boundary samples and images, sort, fill the halos.
 
@@ -228,10 +233,11 @@ class Domain:
         left.x += self._period_left
         right.x += self._period_right
         self.own = slice(len(left), len(left) + len(owned))
-        every, self.stack = Particles.join([left, owned, right]), Stack(begin, end)
-        cell = g.cell(self.stack.piece[stored - begin + HALO], every.y, every.z)
-        order, self.first = sort_by_cell(cell, sort_key(stored, every.id), self.stack.column.size * g.per_column)
-        self.particles = every.sorted(order, self._buffers)
+        parts, self.stack = [left, owned, right], Stack(begin, end)
+        y, z, ident = (np.concatenate([getattr(part, name) for part in parts]) for name in ("y", "z", "id"))
+        cell = g.cell(self.stack.piece[stored - begin + HALO], y, z)
+        order, self.first = sort_by_cell(cell, sort_key(stored, ident), self.stack.column.size * g.per_column)
+        self.particles = Particles.sorted(parts, order, self._buffers)
         stored = stored[order][self.own]
         self._send_left = self.own.start + np.flatnonzero(stored < begin + HALO)
         self._send_right = self.own.start + np.flatnonzero(stored >= end - HALO)

@@ -13,7 +13,7 @@ from parsim.errors import InputError
 from parsim.films import Films
 from parsim.fluid.wcmps import WCMPS
 from parsim.neighbours import Neighbours
-from parsim.shapes import free_of_bodies, lattice
+from parsim.shapes import Lattice, taken_by_bodies
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
 from parsim.state import FLUID, Particles, make_id
@@ -69,19 +69,22 @@ def grid_of(case, layers, reach):
     return Grid(low, high, reach, periodic)
 
 
-def water(case, bodies, scheme):
-    """The water at the start: all fluid particles of the case, with the velocity of their fill, in pressure balance."""
+def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
+    """The water at the start, with the velocity of its fill and in pressure balance: the particles at `here`(x), bool.
+
+    Ids count the points of all fills, so that they are the same for any slab.
+    """
     parts, number = [], 0
     for fill in case.water.fill:
-        points = lattice(fill.min, fill.max, case.spacing, case.axes)
-        size = np.subtract(fill.max, fill.min)
-        spacing = [size[a] / max(round(size[a] / case.spacing), 1) for a in range(3)]
-        idents = number + np.arange(len(points))
-        number += len(points)
-        stays = free_of_bodies(points, spacing, case, bodies)
+        points = Lattice(fill.min, fill.max, case.spacing, case.axes)
+        x, y, z = points.rows
+        open_water = here(x)
         if case.gate is not None:
-            stays &= (points[:, 0] < case.gate.min_x) | (points[:, 0] > case.gate.max_x)
-        parts.append(_particles(case, scheme, fill, points[stays], idents[stays]))
+            open_water &= (x < case.gate.min_x) | (x > case.gate.max_x)
+        mine = points.within(open_water, np.ones(y.size, bool), np.ones(z.size, bool))
+        mine = mine[~np.isin(mine, taken_by_bodies(points, case, bodies))]
+        parts.append(_particles(case, scheme, fill, points.points(mine), number + mine))
+        number += points.size
     return Particles.join(parts) if parts else Particles()
 
 
@@ -91,5 +94,5 @@ def _particles(case, scheme, fill, points, idents):
     u, v, w = fill.velocity
     return Particles(
         len(points), id=make_id(FLUID, idents), kind=FLUID, x=points[:, 0], y=points[:, 1], z=points[:, 2],
-        u=u, v=v, w=w, n=[scheme.number_at(p) for p in pressure],
+        u=u, v=v, w=w, n=scheme.number_at(pressure),
     )

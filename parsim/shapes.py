@@ -2,7 +2,7 @@
 
 Gaps narrower than the spacing hold no particle, and a body's underside need not lie on a lattice plane. Hence the
 space that bodies take is measured finely, and as many lattice points are left out as fill it, those deepest inside
-the bodies first, whole rows thinned evenly.
+the bodies first, whole rows thinned evenly. Only what lies beside bodies is looked at, the same on every rank.
 """
 
 import numpy as np
@@ -13,14 +13,28 @@ _FINE = 4  # measuring points per spacing and axis
 _OPPOSITE = -0.9  # cosine below which two outward directions face each other across a gap
 
 
-def lattice(low, high, spacing, axes):
-    """Even lattice points (n, 3) in a box with about the spacing; the other axis keeps its middle."""
-    rows = []
-    for axis in range(3):
-        length = high[axis] - low[axis]
-        count = max(round(length / spacing), 1) if axis in axes else 1
-        rows.append(low[axis] + (np.arange(count) + 0.5) * (length / count))
-    return np.stack(np.meshgrid(*rows, indexing="ij"), -1).reshape(-1, 3)
+class Lattice:
+    """Even points in a box with about the spacing, numbered with z fastest; an axis not in `axes` keeps its middle.
+
+    Attributes: rows, three arrays of coordinates, m; spacing (3,), m; size, the number of points.
+    """
+
+    def __init__(self, low, high, spacing, axes):
+        lengths = [high[a] - low[a] for a in range(3)]
+        counts = [max(round(lengths[a] / spacing), 1) if a in axes else 1 for a in range(3)]
+        self.spacing = [length / count for length, count in zip(lengths, counts, strict=True)]
+        self.rows = [low[a] + (np.arange(counts[a]) + 0.5) * self.spacing[a] for a in range(3)]
+        self.size = counts[0] * counts[1] * counts[2]
+
+    def points(self, number):
+        """The points of these numbers: (n, 3), m."""
+        at = np.unravel_index(number, [row.size for row in self.rows])
+        return np.stack([row[index] for row, index in zip(self.rows, at, strict=True)], -1)
+
+    def within(self, *wanted):
+        """Numbers of the points whose three indices are all `wanted`, by axis: bool (points of that row,)."""
+        grid = np.ix_(*(np.flatnonzero(rows) for rows in wanted))
+        return np.ravel_multi_index(grid, [row.size for row in self.rows]).ravel()
 
 
 def outside_box(points, centre, turn, half, axes):
@@ -73,21 +87,30 @@ def scatter(index):
         return z ^ (z >> np.uint64(31))
 
 
-def free_of_bodies(points, spacing, case, bodies):
-    """Which lattice points (n, 3) stay water: bool (n,). `spacing` (3,) is that of the lattice, m."""
-    if not len(bodies.mass) or not len(points):
-        return np.ones(len(points), bool)
-    nearest, taken = solids(points, case, bodies)
+def beside_bodies(points, case, bodies):
+    """Numbers (n,) of the points of a Lattice that lie in bodies or within a spacing of them."""
+    found = [np.zeros(0, np.int64)]
+    for centre, half in zip(bodies.position, bodies.half, strict=True):
+        reach = np.sqrt(sum(half[a] ** 2 for a in case.axes)) + 2.0 * case.spacing
+        found.append(points.within(*((np.abs(row - centre[a]) < reach) | (a not in case.axes)
+                                     for a, row in enumerate(points.rows))))
+    return np.unique(np.concatenate(found))
+
+
+def taken_by_bodies(points, case, bodies):
+    """Numbers (n,) of the points of a Lattice that are not water, since bodies and the gaps beside them take them."""
+    number = beside_bodies(points, case, bodies)
+    if not number.size:
+        return number
+    place, spacing = points.points(number), points.spacing
+    nearest, taken = solids(place, case, bodies)
     near = np.flatnonzero(nearest < case.spacing)
     volume = 0.0
     fine = (np.arange(_FINE) + 0.5) / _FINE - 0.5
     steps = [fine * spacing[a] if a in case.axes else np.zeros(1) for a in range(3)]
     for offset in np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3):
-        volume += solids(points[near] + offset, case, bodies)[1].mean() * near.size if near.size else 0.0
+        volume += solids(place[near] + offset, case, bodies)[1].mean() * near.size if near.size else 0.0
     count = round(volume / _FINE ** len(case.axes))
     depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near]
     depth = np.round(depth / case.spacing, 6)  # points of one lattice plane are equally deep
-    order = near[np.lexsort((scatter(near), depth))]
-    stays = np.ones(len(points), bool)
-    stays[order[:count]] = False
-    return stays
+    return number[near[np.lexsort((scatter(number[near]), depth))[:count]]]

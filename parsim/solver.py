@@ -28,10 +28,7 @@ class Simulation:
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
         self._uneven_sum, self._uneven_most = 0.0, 1.0
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
-        fluid = water(case, self.bodies, self.scheme)
-        mine = self.domain.grid.layer(fluid.x)
-        begin, end = self.domain.layers
-        self._rebuild(fluid.take((mine >= begin) & (mine < end)))
+        self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
         self._look()
 
     @property

@@ -8,7 +8,7 @@ import pytest
 from parsim.case import parse
 from parsim.comm import Comm
 from parsim.setup import water
-from parsim.shapes import free_of_bodies, lattice, outside_box
+from parsim.shapes import Lattice, outside_box, taken_by_bodies
 from parsim.solid.bodies import from_case
 from parsim.solver import Simulation
 from parsim.state import GATE_DOWN, GATE_UP
@@ -137,10 +137,9 @@ def test_outside_box_is_the_distance_to_the_surface():
 @pytest.mark.parametrize("height", [0.15, 0.153, 0.1567])
 def test_the_fill_leaves_out_the_volume_of_the_bodies_wherever_they_are(height):
     case = parse(POOL | {"bodies": [SQUARE | {"position": [0.2034, 0.5, height]}]})
-    points = lattice((0.0, 0.0, 0.0), (0.4, 1.0, 0.3), 0.01, (0, 2))
-    stays = free_of_bodies(points, [0.01] * 3, case, from_case(case))
-    assert (~stays).sum() == pytest.approx(36, abs=1)
-    gone = points[~stays]
+    points = Lattice((0.0, 0.0, 0.0), (0.4, 1.0, 0.3), 0.01, (0, 2))
+    gone = points.points(taken_by_bodies(points, case, from_case(case)))
+    assert len(gone) == pytest.approx(36, abs=1)
     assert np.abs(gone - [0.2034, 0.5, height]).max() < 0.04
 
 
@@ -152,6 +151,15 @@ def test_gaps_narrower_than_the_spacing_hold_no_water():
     assert not ((np.abs(fluid.x - 0.132) < 0.002) & (np.abs(fluid.z - 0.15) < 0.025)).any()
     expected = 40 * 30 - (2 * 36 + 0.4 * 6)
     assert len(fluid) == pytest.approx(expected, abs=1.5)
+
+
+def test_slabs_start_with_the_parts_of_one_water():
+    blocks = [SQUARE | {"name": f"b{k}", "position": [x, 0.5, 0.15]} for k, x in enumerate((0.1, 0.164))]
+    s = simulation(POOL | {"bodies": blocks})
+    whole = water(s.case, s.bodies, s.scheme)
+    parts = [water(s.case, s.bodies, s.scheme, lambda x, side=side: (x < 0.113) == side) for side in (True, False)]
+    for name in ("id", "x", "z", "n"):
+        assert np.concatenate([getattr(part, name) for part in parts]).tolist() == getattr(whole, name).tolist()
 
 
 def gated(opens):

@@ -36,6 +36,15 @@ def seventh_root(y):
     return s
 
 
+@kernel
+def seventh_roots(y):
+    """`seventh_root` of each y (n,)."""
+    out = np.empty(y.size)
+    for i in range(y.size):
+        out[i] = seventh_root(y[i])
+    return out
+
+
 @rows
 def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, scale, gx, gy, gz, density, radius, n0,
                       stiffness, n, p, q):

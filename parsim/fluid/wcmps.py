@@ -44,8 +44,8 @@ class WCMPS:
         return self.cfl * self.lattice.spacing / (self.sound + speed)
 
     def number_at(self, pressure):
-        """Number density at a pressure, Pa >= 0: the inverse state."""
-        return self.lattice.number * kernels.seventh_root(pressure / self.stiffness)
+        """Number density (n,) at pressures (n,), Pa >= 0: the inverse state."""
+        return self.lattice.number * kernels.seventh_roots(pressure / self.stiffness)
 
     def predict(self, p, dt):
         """Fluid to the half step, halo included: r, n, then the pressure."""
