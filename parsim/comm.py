@@ -10,6 +10,7 @@ class Comm:
     def __init__(self, ring=False):
         self._mpi = MPI.COMM_WORLD
         self.rank, self.size = self._mpi.Get_rank(), self._mpi.Get_size()
+        self._sends, self._sent = [], ()  # under way, and what must stay until they have arrived
         last = self.size - 1
         self.left = self.rank - 1 if self.rank > 0 else (last if ring else None)
         self.right = self.rank + 1 if self.rank < last else (0 if ring else None)
@@ -33,21 +34,27 @@ class Comm:
         return from_left, from_right
 
     def start(self, to_left, to_right, from_left, from_right):
-        """Begin to exchange buffers of known lengths; none may be touched before `wait` has had what this returns."""
-        requests = []
-        if self.left is not None:
-            requests.append(self._mpi.Irecv(from_left, self.left, tag=1))
-        if self.right is not None:
-            requests.append(self._mpi.Irecv(from_right, self.right, tag=2))
-        if self.left is not None:
-            requests.append(self._mpi.Isend(to_left, self.left, tag=2))
-        if self.right is not None:
-            requests.append(self._mpi.Isend(to_right, self.right, tag=1))
-        return requests
+        """Begin to exchange buffers of known lengths; returns what `wait` wants before the received ones may be read.
 
-    def wait(self, requests):
-        """End what `start` has begun."""
-        MPI.Request.Waitall(requests)
+        What is sent belongs to this object from now on.
+        """
+        MPI.Request.Waitall(self._sends)
+        receives, self._sends = [], []
+        for peer, buffer, tag in ((self.left, from_left, 1), (self.right, from_right, 2)):
+            if peer is not None:
+                receives.append(self._mpi.Irecv(buffer, peer, tag=tag))
+        for peer, buffer, tag in ((self.left, to_left, 2), (self.right, to_right, 1)):
+            if peer is not None:
+                self._sends.append(self._mpi.Isend(buffer, peer, tag=tag))
+        self._sent = to_left, to_right
+        return receives
+
+    def wait(self, receives):
+        """End what `start` has begun, for the buffers received.
+
+        Those sent are waited for at the next `start`: here that would mean to wait for a slower neighbour.
+        """
+        MPI.Request.Waitall(receives)
 
     def sum_integers(self, array):
         """All-reduced sum of an int64 array, exact in any order."""

@@ -15,7 +15,7 @@ from parsim.jit import kernel
 from parsim.state import POSITION, Particles
 from parsim.timers import Timers
 
-_UNEVEN = 1.01  # largest work of a rank over the mean that leaves the cuts alone
+_UNEVEN = 1.005  # largest work of a rank over the mean that leaves the cuts alone
 
 
 class Slab:
@@ -52,11 +52,11 @@ class Domain:
     of a rank over the mean, as `balance` has seen it last.
     """
 
-    def __init__(self, grid, comm, sources, cuts=None, timers=None):
+    def __init__(self, grid, comm, sources, timers=None):
         self.grid, self.comm, self.sources = grid, comm, sources
         self.timers = timers or Timers()
         self.uneven = 1.0
-        self.cuts = np.linspace(0, grid.layers, comm.size + 1).round().astype(np.int64) if cuts is None else cuts
+        self.cuts = even_cuts(np.ones(grid.layers), comm.size)
         self.lost = 0
         self._buffers = {}
 
@@ -94,12 +94,12 @@ class Domain:
         """
         p = self.particles
         with self.timers("halo"):
-            for name in names:
+            for name in names if self._image_at.size else ():
                 shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
                 copy_images(getattr(p, name), self._image_at, self._image_of, shift)
             ends = (slice(0, self.own.start), slice(self.own.stop, len(p)))
             out = [np.stack([getattr(p, name)[at] for name in names]).astype(float, copy=False)
-                   for at in (self._send_left, self._send_right)]
+                   for at in self._send]
             back = [np.empty((len(names), at.stop - at.start)) for at in ends]
             requests = self.comm.start(*out, *back)
         yield
@@ -145,6 +145,12 @@ class Domain:
             cuts = even_cuts(layers, self.comm.size)
             if _uneven(layers, cuts) < self.uneven:
                 self.cuts = cuts
+
+    def cut_evenly(self, x, count):
+        """Cut to an equal number of particles, `count` (n,) of them at each x (n,), before anything is stored."""
+        work = np.bincount(self.grid.layer(x), count, self.grid.layers)
+        if work.any():
+            self.cuts = even_cuts(work, self.comm.size)
 
     def _wrap(self, fluid):
         """Periodic positions back into the box; what left the grid is counted as lost and taken out."""
@@ -225,7 +231,7 @@ class Domain:
         """Exchange the layers next to the cuts, sort everything, and note what every refresh sends."""
         g, (begin, end) = self.grid, self.layers
         layer = g.layer(owned.x)
-        halos = self.comm.exchange(owned.take(layer < begin + HALO).pack(), owned.take(layer >= end - HALO).pack())
+        halos = self.comm.exchange(*(owned.take(shared).pack() for shared in self._shared(layer)))
         left, right = (Particles.unpack(buffer) for buffer in halos)
         left_end, right_end = self.comm.rank == 0, self.comm.rank == self.comm.size - 1
         stored = np.concatenate([g.layer(left.x) - g.layers * left_end, layer, g.layer(right.x) + g.layers * right_end])
@@ -239,14 +245,17 @@ class Domain:
         order, self.first = sort_by_cell(cell, sort_key(stored, ident), self.stack.column.size * g.per_column)
         self.particles = Particles.sorted(parts, order, self._buffers)
         stored = stored[order][self.own]
-        self._send_left = self.own.start + np.flatnonzero(stored < begin + HALO)
-        self._send_right = self.own.start + np.flatnonzero(stored >= end - HALO)
-        self.border = np.zeros(stored.size, bool)
-        if self.comm.left is not None:
-            self.border |= stored < begin + HALO
-        if self.comm.right is not None:
-            self.border |= stored >= end - HALO
+        shared = self._shared(stored)
+        self._send = [self.own.start + np.flatnonzero(side) for side in shared]
+        self.border = shared[0] | shared[1]
         self._note_images()
+
+    def _shared(self, layer):
+        """Which owned particles, given their layers (owned,), are in the halo of the left and of the right slab."""
+        begin, end = self.layers
+        none = np.zeros(layer.size, bool)
+        return (none if self.comm.left is None else layer < begin + HALO,
+                none if self.comm.right is None else layer >= end - HALO)
 
     def _note_images(self):
         """Owned images, the particles they copy, and the shifts between them."""

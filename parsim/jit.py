@@ -1,6 +1,7 @@
-"""The two kinds of Numba kernel.
+"""The kinds of Numba kernel.
 
-`kernel` is strict IEEE arithmetic, for element-wise work and sorting.
+`kernel` is strict IEEE arithmetic, for sorting and for few elements.
+`each` is the same, threaded over `prange`, for element-wise work on many particles.
 `rows` runs a `prange` over particles; inside one particle's neighbour loop the sum may be reordered for SIMD,
 which depends on nothing but that particle's own list.
 """
@@ -17,6 +18,11 @@ FAST = {"reassoc", "nsz", "contract"}
 def kernel(function):
     """Compile strict and cached, without threads."""
     return njit(function, cache=True, error_model="numpy", nogil=True)
+
+
+def each(function):
+    """Compile strict and cached, threaded over `prange`."""
+    return njit(function, cache=True, error_model="numpy", nogil=True, parallel=True)
 
 
 def rows(function):

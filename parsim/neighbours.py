@@ -13,7 +13,7 @@ from parsim.state import BODY, FLUID, GATE_DOWN, GATE_UP, WALL
 _TALL = 2  # cells of a block, one above the other
 _BLOCKS_PER_TASK = 32
 _BOUNDARY = 0.6  # length of a row of a boundary particle, which holds fluid only, over that of a fluid one
-_ROOM = 1.05
+_ROOM = 1.02
 _BOUNDARY_PAIR, _PARTICLE = 3, 25  # pairs of walls and gate that cost as much as one of water; the rest, in such pairs
 
 

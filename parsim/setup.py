@@ -18,7 +18,7 @@ from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
 from parsim.state import FLUID, Particles, make_id
 
-_ROOM = 1.05  # length of the neighbour rows over that of the full lattice
+_ROOM = 1.03  # length of the neighbour rows over that of the full lattice
 
 
 def check_ranks(case, ranks):
@@ -67,6 +67,14 @@ def grid_of(case, layers, reach):
     if case.dimensions == 2:  # one cell across
         periodic[1], low[1], high[1] = False, 0.5 - reach / (2 * REACH), 0.5 + reach / (2 * REACH)
     return Grid(low, high, reach, periodic)
+
+
+def columns(case):
+    """Where the lattice planes across x of all fills are (n,), m, and how many points each has (n,)."""
+    fills = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
+    x = [points.rows[0] for points in fills]
+    count = [np.full(points.rows[0].size, points.size // points.rows[0].size) for points in fills]
+    return np.concatenate([np.zeros(0), *x]), np.concatenate([np.zeros(0), *count])
 
 
 def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from parsim.comm import Comm
-from parsim.setup import Models, check_ranks, water
+from parsim.setup import Models, check_ranks, columns, water
 from parsim.timers import Timers
 
 _MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
@@ -18,16 +18,15 @@ class Simulation:
     and awake boundary particles of all ranks; every: all particles of all ranks, sleeping walls included.
     """
 
-    def __init__(self, case, comm, cuts=None):
+    def __init__(self, case, comm):
         self.case, self.comm, self.timers = case, comm, Timers()
         models = self.models = Models(case, comm, self.timers)
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
         self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
-        if cuts is not None:
-            self.domain.cuts = cuts
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
         self._uneven_sum, self._uneven_most = 0.0, 1.0
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
+        self.domain.cut_evenly(*columns(case))
         self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
         self._look()
 

@@ -62,9 +62,9 @@ def own(parsed):
 
 
 def kernels(parsed):
-    """Functions compiled by @kernel or @rows."""
+    """Functions compiled by @kernel, @each or @rows."""
     for node in ast.walk(parsed):
-        if isinstance(node, ast.FunctionDef) and any(_last(d) in ("kernel", "rows") for d in node.decorator_list):
+        if isinstance(node, ast.FunctionDef) and {_last(d) for d in node.decorator_list} & {"kernel", "each", "rows"}:
             yield node
 
 

@@ -49,14 +49,19 @@ def test_seventh_root_inverts_the_state(y):
     assert kernels.seventh_root(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
 
 
-def test_pressure_follows_the_state_and_vanishes_at_the_surface():
-    n = np.array([1.0, 1.01, 0.99, 1.01, 1.01, 1.01])
+def test_the_half_step_moves_fluid_and_gives_it_the_pressure_of_the_state():
+    before = np.array([1.0, 1.0, 1.0, 1.01, 1.01, 1.01])
+    rate, velocity = np.array([0.0, 0.1, -0.1, 0.0, 0.0, 0.1]), np.arange(6.0)
     kind = np.array([0, 0, 0, 0, 0, 1], np.uint8)
     state = np.array([INTERNAL, INTERNAL, VICINITY, SURFACE, DETACHED, INTERNAL], np.uint8)
-    p, q = np.full(6, 9.0), np.full(6, 9.0)
-    kernels.pressure(kind, state, n, 1.0, 1000.0, p, q)
+    n, p, q = before.copy(), np.full(6, 9.0), np.full(6, 9.0)
+    x, y, z = (np.full(6, start) for start in (1.0, 2.0, 3.0))
+    kernels.predict(kind, state, velocity, 2 * velocity, -velocity, rate, 0.1, 1.0, 1000.0, x, y, z, n, p, q)
+    moved = np.where(kind == 0, 0.1 * velocity, 0.0)
+    assert np.stack([x, y, z]) == pytest.approx(np.stack([1.0 + moved, 2.0 + 2 * moved, 3.0 - moved]), rel=1e-14)
+    assert n == pytest.approx([1.0, 1.01, 0.99, 1.01, 1.01, 1.01], rel=1e-14)
     assert p == pytest.approx([0, 1000 * (1.01**7 - 1), 1000 * (0.99**7 - 1), 0, 0, 9.0], rel=1e-12, abs=1e-9)
-    assert q[1] == p[1] / 1.01
+    assert q[:5] == pytest.approx(p[:5] / n[:5], rel=1e-14)
 
 
 def test_momentum_sweep(mixed):

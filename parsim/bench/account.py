@@ -92,12 +92,12 @@ def rates(tell):
     return table
 
 
-def paired(ways, case=None, steps=120):
+def paired(ways, case=None, steps=100):
     """Efficiency of every way but the first: name -> (ranks, threads), on two cores against one; best of some turns.
 
     Water runs across the cut all the time.
     """
-    order = {"case": case or cases.dam_break(0.00375, 3.1, _SPEED), "warm": 10, "steps": steps}
+    order = {"case": case or cases.dam_break(0.003, 3.1, _SPEED, 0.3, 0.099), "warm": 10, "steps": steps}
     turns = [{name: measured(order, *way)["rate"] for name, way in ways.items()} for _ in range(_TURNS)]
     best = {name: max(turn[name] for turn in turns) for name in ways}
     first, *others = ways

@@ -10,10 +10,10 @@ def still_water(count, support):
     return _case(support, l0, [size, size, round(size + 5 * l0, 9)], [{"min": [0.0, 0.0, 0.0], "max": [size] * 3}])
 
 
-def dam_break(spacing, support, speed=0.0, until=1.0):
-    """A cube of water, 15 cm high, that runs down a tank of 75 cm; `speed` (m/s) is what it has at the start."""
-    column = {"min": [0.0, 0.0, 0.0], "max": [0.15, 0.15, 0.15], "velocity": [speed, 0.0, 0.0]}
-    return _case(support, spacing, [0.75, 0.15, 0.3], [column], until)
+def dam_break(spacing, support, speed=0.0, length=0.15, section=0.15):
+    """Water, `length` long and `section` high and wide (m), that runs down a tank; `speed`, m/s, is its first one."""
+    column = {"min": [0.0, 0.0, 0.0], "max": [length, section, section], "velocity": [speed, 0.0, 0.0]}
+    return _case(support, spacing, [0.75, section, 0.3], [column])
 
 
 def floating_blocks(spacing, support):
@@ -28,6 +28,6 @@ def floating_blocks(spacing, support):
     return case
 
 
-def _case(support, spacing, size, fill, until=100.0):
-    return {"dimensions": 3, "spacing": spacing, "box": {"max": size}, "run": {"until": until},
+def _case(support, spacing, size, fill):
+    return {"dimensions": 3, "spacing": spacing, "box": {"max": size}, "run": {"until": 100.0},
             "water": {"support": support, "fill": fill}}

@@ -1,7 +1,8 @@
 """One measurement of the benchmark, in a process or job of its own: an order as JSON in, figures as JSON out.
 
-The order holds `case` (a nested dict) and may hold `warm` (steps before the clock runs), `steps` or `until` (s) to run,
-`kernels` (time single sweeps too) and `record` (write frames and series, at the intervals of the case).
+The order holds `case` (a nested dict) and may hold `warm` (steps before the clock runs), `steps` or `until` (s) to
+run, `kernels` (time single sweeps too), `record` (write frames and series, at the intervals of the case) and `messages`
+(time nothing but messages).
 """
 
 import json
@@ -10,6 +11,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+import numpy as np
 
 from parsim.case import parse
 from parsim.comm import Comm
@@ -21,7 +24,10 @@ _CALLS = 7  # of a single sweep; the fastest counts
 
 def measure(order):
     """Run what the order asks for; returns the figures (dict), the same on all ranks but for times."""
-    case, comm = parse(order["case"]), Comm()
+    case = parse(order["case"])
+    comm = Comm(case.box.faces.x_min == "periodic")
+    if order.get("messages"):
+        return {"messages": _messages(comm)}
     prepare()
     from parsim.solver import Simulation
 
@@ -69,7 +75,26 @@ def _timed(simulation, recorder, order):
     return {"wall_s": wall, "work": work, "steps": count, "rate": work / wall, "phases": phases,
             "rebuilds": simulation.rebuilds - rebuilds, "active": simulation.active, "fluid": simulation.fluid_count,
             "all": simulation.fluid_count + len(simulation.models.walls) + len(simulation.models.samples),
+            "halo": len(simulation.domain.particles) - simulation.domain.border.size,
             "uneven": simulation.uneven[0], "uneven_most": simulation.uneven[1]}
+
+
+def _messages(comm, small=1, large=1 << 17, times=300):
+    """Latency, s, and bandwidth, bytes/s, of an exchange with one neighbour, and the time of an all-reduce, s."""
+    def seconds(work):
+        work()
+        begin = time.perf_counter()
+        for _ in range(times):
+            work()
+        return (time.perf_counter() - begin) / times
+
+    def exchange(size):
+        arrays = [np.zeros(size) for _ in range(4)]
+        return seconds(lambda: comm.exchange_fixed(*arrays))
+
+    latency = exchange(small)
+    return {"latency": latency / 2, "bandwidth": 16 * large / max(exchange(large) - latency, 1e-9),
+            "reduce": seconds(lambda: comm.max([1.0]))}
 
 
 def _resident():

@@ -9,20 +9,26 @@ import math
 
 import numpy as np
 
-from parsim.jit import kernel, prange, rows
+from parsim.jit import each, kernel, prange, rows
 from parsim.state import FLUID, SURFACE
 
 
-@kernel
-def pressure(kind, surface, n, n0, stiffness, p, q):
-    """State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero at the surface."""
-    for i in range(n.size):
-        if kind[i] != FLUID:
-            continue
-        s = n[i] / n0
-        s2 = s * s
-        p[i] = 0.0 if surface[i] >= SURFACE else stiffness * (s2 * s2 * s2 * s - 1.0)
-        q[i] = p[i] / n[i]
+@each
+def predict(kind, surface, u, v, w, rate, half, n0, stiffness, x, y, z, n, p, q):
+    """Fluid `half` a step on, halo included: positions, number density, pressure.
+
+    State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero at the surface.
+    """
+    for i in prange(n.size):
+        if kind[i] == FLUID:
+            x[i] += half * u[i]
+            y[i] += half * v[i]
+            z[i] += half * w[i]
+            n[i] += half * n[i] * rate[i]
+            s = n[i] / n0
+            s2 = s * s
+            p[i] = 0.0 if surface[i] >= SURFACE else stiffness * (s2 * s2 * s2 * s - 1.0)
+            q[i] = p[i] / n[i]
 
 
 @kernel
@@ -191,37 +197,39 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, c, scale, rad
         ax[i], ay[i], az[i] = sx, sy, sz
 
 
-@kernel
+@each
 def kick(at, gx, gy, gz, keep, dt, ax, ay, az, u, v, w):
     """Velocity of the particles `at` by their pair acceleration and gravity, times `keep` (1 but when settling)."""
-    for i in at:
+    for row in prange(at.size):
+        i = at[row]
         u[i] = (u[i] + dt * (ax[i] + gx)) * keep
         v[i] = (v[i] + dt * (ay[i] + gy)) * keep
         w[i] = (w[i] + dt * (az[i] + gz)) * keep
 
 
-@kernel
+@each
 def drift(kind, u, v, w, dt, x, y, z):
-    """Positions of all fluid particles, halo included, over dt at their velocity."""
-    for i in range(x.size):
+    """Positions of all fluid particles over dt at their velocity."""
+    for i in prange(x.size):
         if kind[i] == FLUID:
             x[i] += dt * u[i]
             y[i] += dt * v[i]
             z[i] += dt * w[i]
 
 
-@kernel
-def grow(kind, rate, dt, n):
-    """Number density of all fluid particles, halo included, over dt at their relative rate."""
-    for i in range(n.size):
-        if kind[i] == FLUID:
-            n[i] += dt * n[i] * rate[i]
+@each
+def grow(at, rate, dt, n):
+    """Number density of the particles `at` over dt at their relative rate."""
+    for row in prange(at.size):
+        i = at[row]
+        n[i] += dt * n[i] * rate[i]
 
 
-@kernel
+@each
 def displace(at, ax, ay, az, x, y, z):
     """Add the shifts of the particles `at`."""
-    for i in at:
+    for row in prange(at.size):
+        i = at[row]
         x[i] += ax[i]
         y[i] += ay[i]
         z[i] += az[i]

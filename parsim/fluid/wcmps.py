@@ -49,9 +49,8 @@ class WCMPS:
 
     def predict(self, p, dt):
         """Fluid to the half step, halo included: r, n, then the pressure."""
-        kernels.drift(p.kind, p.u, p.v, p.w, 0.5 * dt, p.x, p.y, p.z)
-        kernels.grow(p.kind, p.rate, 0.5 * dt, p.n)
-        kernels.pressure(p.kind, p.surface, p.n, self.lattice.number, self.stiffness, p.p, p.q)
+        kernels.predict(p.kind, p.surface, p.u, p.v, p.w, p.rate, 0.5 * dt, self.lattice.number, self.stiffness, p.x,
+                        p.y, p.z, p.n, p.p, p.q)
 
     def accelerate(self, domain, near, dt):
         """Boundary pressures, then pair accelerations, concentration and surface of the fluid, at the half step."""
@@ -99,7 +98,7 @@ class WCMPS:
             self._drift(p, halo, dt)
         self._continuity(p, near, near.border, speed)
         with self.timers("move"):
-            kernels.grow(p.kind[own], p.rate[own], 0.5 * dt, p.n[own])
+            kernels.grow(near.fluid, p.rate, 0.5 * dt, p.n)
         if self.shifting:
             with self.timers("shifting"):
                 self._shift(domain, near, dt, speed)
