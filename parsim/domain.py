@@ -10,6 +10,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from parsim import exact
+from parsim.balance import accumulate, even_cuts, uneven
 from parsim.cells import HALO, LAYERS, REACH, Stack, holding, occupied, sort_by_cell, sort_key, spread
 from parsim.jit import kernel
 from parsim.state import POSITION, Particles
@@ -140,10 +141,10 @@ class Domain:
         layers = np.zeros(self.grid.layers, np.int64)
         accumulate(self.grid.layer(self.particles.x[self.own]), work, layers)
         layers = self.comm.sum_integers(layers)
-        self.uneven = _uneven(layers, self.cuts)
+        self.uneven = uneven(layers, self.cuts)
         if move and self.uneven > _UNEVEN:
             cuts = even_cuts(layers, self.comm.size)
-            if _uneven(layers, cuts) < self.uneven:
+            if uneven(layers, cuts) < self.uneven:
                 self.cuts = cuts
 
     def cut_evenly(self, x, count):
@@ -274,37 +275,8 @@ class Domain:
             self._image_shift.append(np.rint(offset / period) * period if period else self._no_shift)
 
 
-def _uneven(work, cuts):
-    """Largest work of a rank over the mean: work (layers,), cuts (ranks + 1,)."""
-    shares = np.add.reduceat(work, cuts[:-1])
-    return float(shares.max() / max(shares.mean(), 1.0))
-
-
-def even_cuts(work, ranks):
-    """Cuts (ranks + 1,) between layers that split work (layers,) evenly, at least HALO layers each."""
-    before = np.concatenate([[0], np.cumsum(work)])
-    cuts = np.searchsorted(before, before[-1] * np.arange(ranks + 1) / ranks)
-    for k in range(1, ranks + 1):  # the nearer of the two layers beside the ideal place
-        at = cuts[k]
-        if at > 0 and before[-1] * k / ranks - before[at - 1] < before[at] - before[-1] * k / ranks:
-            cuts[k] = at - 1
-    cuts[0], cuts[-1] = 0, work.size
-    for k in range(1, ranks):
-        cuts[k] = max(cuts[k], cuts[k - 1] + HALO)
-    for k in range(ranks - 1, 0, -1):
-        cuts[k] = min(cuts[k], cuts[k + 1] - HALO)
-    return cuts.astype(np.int64)
-
-
 @kernel
 def copy_images(field, at, of, shift):
     """field[at] = field[of] + shift, element by element."""
     for k in range(at.size):
         field[at[k]] = field[of[k]] + shift[k]
-
-
-@kernel
-def accumulate(at, values, total):
-    """total[at] += values, element by element, whole numbers."""
-    for k in range(at.size):
-        total[at[k]] += values[k]

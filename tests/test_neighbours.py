@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from clouds import cloud, lattice, listed
 
+from parsim.balance import even_cuts, uneven
 from parsim.cells import HALO, LAYERS, REACH, Grid, Stack, occupied, sort_by_cell, sort_key, spread
-from parsim.domain import even_cuts
 from parsim.neighbours import cut_rows, hidden
 from parsim.state import FLUID, GATE_DOWN, GATE_UP, Particles
 
@@ -147,6 +147,7 @@ def test_cuts_split_the_work_evenly_and_leave_room_for_halos():
     work = np.array([0, 0, 5, 5, 5, 5, 1, 1, 1, 1, 1, 1]).repeat(HALO)
     assert even_cuts(work, 2).tolist() == [0, round(4.6 * HALO), 12 * HALO]
     assert even_cuts(np.arange(3 * HALO) == 0, 3).tolist() == [0, HALO, 2 * HALO, 3 * HALO]
+    assert uneven(work, np.array([0, 6 * HALO, 12 * HALO])) == pytest.approx(20 / 13)
     assert (np.diff(even_cuts(np.ones(8 * HALO + 1, np.int64), 8)) >= HALO).all()
 
 
