@@ -28,6 +28,9 @@ class Simulation:
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
         self.domain.cut_evenly(*columns(case))
         self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
+        self._balance(True)
+        self._rebuild(self.fluid)  # with cuts that know the walls and bodies too
+        self.rebuilds, self._uneven_sum, self._uneven_most = 0, 0.0, 1.0
         self._look()
 
     @property
@@ -38,12 +41,13 @@ class Simulation:
     @property
     def uneven(self):
         """Largest work of a rank over the mean before each rebuild: the mean of that, and the most."""
-        return self._uneven_sum / max(self.rebuilds - 1, 1), self._uneven_most
+        return self._uneven_sum / self.rebuilds if self.rebuilds else 1.0, self._uneven_most
 
     def step(self):
         """Advance water and bodies by one time step."""
         self.dt = dt = min(self.scheme.time_step(self.speed), self.contacts.limit())
         if self._outrun(dt):
+            self._balance(self.rebuilds % self.case.run.balance_every == 0)
             self._rebuild(self.fluid)
         keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
         force = self._half_step(dt)
@@ -102,14 +106,15 @@ class Simulation:
         opening = self.gate is not None and self.gate.closed(self.time) != self._closed
         return 2.0 * travel > run.skin * self.case.spacing or self.since >= run.rebuild_at_most or opening
 
+    def _balance(self, move):
+        with self.timers("rebuild"):
+            self.domain.balance(self.near.work(self.domain.particles, self.domain.own), move)
+        self._uneven_sum += self.domain.uneven
+        self._uneven_most = max(self._uneven_most, self.domain.uneven)
+
     def _rebuild(self, fluid):
         domain, near = self.domain, self.near
         with self.timers("rebuild"):
-            if self.rebuilds:
-                domain.balance(near.work(domain.particles, domain.own),
-                               self.rebuilds % self.case.run.balance_every == 0)
-                self._uneven_sum += domain.uneven
-                self._uneven_most = max(self._uneven_most, domain.uneven)
             domain.rebuild(fluid, self.time)
         with self.timers("neighbours"):
             near.build(domain, self.models.reach)

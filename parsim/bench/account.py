@@ -106,8 +106,7 @@ def paired(ways, case=None, steps=100):
 
 def _balance(ranks, tell):
     tell(f"a dam break on {ranks} ranks, to see how even their work stays")
-    spacing = 0.006 if ranks <= 2 else 0.005
-    run = measured({"case": cases.dam_break(spacing, 3.1), "warm": 0, "until": 0.6}, ranks)
+    run = measured({"case": cases.dam_break(0.005, 3.1), "warm": 0, "until": 0.5}, ranks)
     return {"mean": run["uneven"] - 1.0, "most": run["uneven_most"] - 1.0, "steps": run["steps"], "fluid": run["fluid"]}
 
 
