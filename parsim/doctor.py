@@ -138,7 +138,8 @@ def _cache():
     except OSError as error:
         remedy = "set NUMBA_CACHE_DIR to a folder you can write, else every start compiles anew"
         return Finding("Kernel cache", str(folder), f"not writable: {error.strerror}", remedy)
-    stale = [other for other in folder.parent.iterdir() if other != folder] if folder.parent.name == "parsim" else []
+    others = folder.parent.iterdir() if folder.parent.name == "parsim" else ()
+    stale = [other for other in others if other.is_dir() and other != folder]
     waste = sum(_size(other) for other in stale)
     found = f"{folder}, {_size(folder) / 1e6:.1f} MB; {len(stale)} older, {waste / 1e6:.1f} MB"
     wrong = "older caches waste room" if waste > 100e6 else ""

@@ -80,7 +80,7 @@ class Domain:
         fluid = self._migrate(self._wrap(fluid))
         slab = Slab(self.grid, *self.layers, self._awake(fluid))
         parts = [fluid, *(source.samples(slab, time) for source in self.sources)]
-        self._assemble(self._with_images(Particles.join(parts)))
+        self._assemble(self._with_images(parts))
 
     def refresh(self, *names):
         """Bring `names` up to date in the images and halos."""
@@ -211,36 +211,41 @@ class Domain:
         padded[since : since + len(right)] |= right
         return spread(padded, REACH)[REACH:-REACH].ravel()
 
-    def _with_images(self, particles):
-        """Add the images of particles within REACH cells of a periodic side in y and z (corners included)."""
+    def _with_images(self, parts):
+        """Parts and the images of what is within REACH cells of a periodic side in y and z (corners included)."""
         for axis in (1, 2):
             if not self.grid.periodic[axis]:
                 continue
-            field = getattr(particles, POSITION[axis])
             low, period = self.grid.low[axis], self.grid.period[axis]
             reach = REACH * self.grid.edge[axis]
             copies = []
-            for near, shift in ((field < low + reach, period), (field >= low + period - reach, -period)):
-                copy = particles.take(near)
-                setattr(copy, POSITION[axis], getattr(copy, POSITION[axis]) + shift)
-                copy.image[:] = 1
-                copies.append(copy)
-            particles = Particles.join([particles, *copies])
-        return particles
+            for part in parts:
+                field = getattr(part, POSITION[axis])
+                for near, shift in ((field < low + reach, period), (field >= low + period - reach, -period)):
+                    copy = part.take(near)
+                    setattr(copy, POSITION[axis], getattr(copy, POSITION[axis]) + shift)
+                    copy.image[:] = 1
+                    copies.append(copy)
+            parts = [*parts, *copies]
+        return parts
 
-    def _assemble(self, owned):
+    def _assemble(self, parts):
         """Exchange the layers next to the cuts, sort everything, and note what every refresh sends."""
         g, (begin, end) = self.grid, self.layers
-        layer = g.layer(owned.x)
-        halos = self.comm.exchange(*(owned.take(shared).pack() for shared in self._shared(layer)))
+        layers = [g.layer(part.x) for part in parts]
+        layer, count = np.concatenate(layers), sum(map(len, parts))
+        sides = zip(*map(self._shared, layers), strict=True)
+        halos = self.comm.exchange(*(
+            Particles.join([part.take(shared) for part, shared in zip(parts, side, strict=True)]).pack()
+            for side in sides))
         left, right = (Particles.unpack(buffer) for buffer in halos)
         left_end, right_end = self.comm.rank == 0, self.comm.rank == self.comm.size - 1
         stored = np.concatenate([g.layer(left.x) - g.layers * left_end, layer, g.layer(right.x) + g.layers * right_end])
         self._period_left, self._period_right = -g.period[0] * left_end, g.period[0] * right_end
         left.x += self._period_left
         right.x += self._period_right
-        self.own = slice(len(left), len(left) + len(owned))
-        parts, self.stack = [left, owned, right], Stack(begin, end)
+        self.own, self.stack = slice(len(left), len(left) + count), Stack(begin, end)
+        parts = [left, *parts, right]
         y, z, ident = (np.concatenate([getattr(part, name) for part in parts]) for name in ("y", "z", "id"))
         cell = g.cell(self.stack.piece[stored - begin + HALO], y, z)
         order, self.first = sort_by_cell(cell, sort_key(stored, ident), self.stack.column.size * g.per_column)

@@ -8,9 +8,9 @@ import numpy as np
 from parsim import case_geometry as geometry
 from parsim.state import FIELDS
 
-RATE = 300_000  # active particle-steps per second and core
+RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine
 FIELD_BYTES = 2 * sum(np.dtype(field.dtype).itemsize for field in FIELDS)  # twice: sorting writes into new arrays
-LIST_ROOM = 1.5  # length of the neighbour rows over that of the full lattice
+LIST_ROOM = 1.2  # bytes of the neighbour rows over those of the full lattice
 _PROBES = 12  # per edge of a body, to see how much of it is in the water
 RANK_BYTES = 300e6  # Python, Numba and its machine code
 

@@ -125,7 +125,7 @@ def test_version(capsys):
 def test_check_prints_the_estimate_and_warnings(capsys):
     assert main(["check", str(BLOCKS), "-n", "4", "--set", "spacing=0.01"]) == 0
     said = capsys.readouterr().out
-    for word in ("a valid case", "water", "4,0", "of 0.000375 s, from -0.3 to 1.2 s", "on each of 4 ranks", "300,000"):
+    for word in ("a valid case", "water", "4,0", "of 0.000375 s, from -0.3 to 1.2 s", "on each of 4 ranks", "500,000"):
         assert word in said
     assert said.endswith("warning: bodies.A1 and 3 more: 2 particles across the thinnest side, 0.0195 m; "
                          "four or more give usable loads\n")

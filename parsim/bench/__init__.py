@@ -33,10 +33,9 @@ def lines(found):
     yield ""
     yield from _sweeps(found["kernels"])
     yield ""
-    yield f"{'particles':>12}{'active':>12}{'rate':>12}{'bytes':>8}{'at most':>9}"
+    yield f"{'water':>12}{'active':>12}{'rate':>12}"
     for size in found["sizes"]:
-        yield (f"{size['fluid']:>12,}{size['active']:>12,}{size['rate']:>12,.0f}{size['bytes']:>8.0f}"
-               f"{size['peak_bytes']:>9.0f}")
+        yield f"{size['fluid']:>12,}{size['active']:>12,}{size['rate']:>12,.0f}"
     yield ""
     yield "machine: " + ", ".join(f"{key} {text}" for key, text in found["machine"].items())
 
@@ -50,7 +49,8 @@ def _ratios(found):
         ("most uneven work, dam break", ", ".join(f"{row['most']:.1%} on {ranks} ranks (mean {row['mean']:.1%})"
                                                   for ranks, row in balance.items())),
         ("slowest over fastest size", f"{slowest / fastest:.3f}"),
-        ("memory", f"{found['bytes_per_particle']:.0f} bytes per active particle, lists included"),
+        ("memory", f"{found['bytes_per_particle']:.0f} bytes per active particle, lists included; at most "
+                   f"{found['peak_bytes_per_particle']:.0f}"),
         ("start to first step", f"{found['start_warm_s']:.1f} s, with empty caches {found['start_cold_s']:.0f} s"),
         ("slower sweep", f"{found['kernel_ns_per_pair']:.2f} ns per true pair"),
     ):

@@ -15,6 +15,7 @@ from parsim.bench import cases
 
 SUPPORTS = (3.1, 2.1)
 SIZES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000)
+_MANY = 1_000_000
 _WORK = 3e6  # particle-steps of one measurement, about
 _CYCLE = 20  # steps: what is measured in still water is a whole number of rebuilds
 _TURNS = 3
@@ -48,13 +49,15 @@ def everything(tell):
     ranks, threads = paired({"one": (1, 1), "ranks": (2, 1), "threads": (1, 2)})
     balance = {str(count): _balance(count, tell) for count in (2, 4)}
     sizes = [_size(count, tell) for count in SIZES]
+    tell("memory")
+    memory = measured({"case": cases.still_water(_MANY, SUPPORTS[0]), "warm": 3, "steps": _CYCLE})
     lowest = {support: min(row[str(support)]["rate"] for row in table.values()) for support in SUPPORTS}
     each = kernels[str(SUPPORTS[0])]
     return {
         "kernel_ns_per_pair": max(each["momentum"], each["continuity"]),
         "step_rate_31": lowest[3.1], "step_rate_21": lowest[2.1],
         "ranks_efficiency": ranks, "threads_efficiency": threads, "imbalance": balance["2"]["most"],
-        "bytes_per_particle": max(size["bytes"] for size in sizes if size["active"] > 3e5),
+        "bytes_per_particle": memory["bytes"], "peak_bytes_per_particle": memory["peak_bytes"],
         "start_warm_s": warm, "start_cold_s": cold,
         "machine": _machine(), "kernels": kernels, "cases": table, "balance": balance, "sizes": sizes,
     }
@@ -113,7 +116,7 @@ def _balance(ranks, tell):
 def _size(count, tell):
     tell(f"{count:,} particles")
     steps = _CYCLE * max(1, round(_WORK / count / _CYCLE))
-    return measured({"case": cases.still_water(count, 3.1), "warm": 3, "steps": steps})
+    return measured({"case": cases.sea(count, SUPPORTS[0]), "warm": 3, "steps": steps})
 
 
 def _machine():

@@ -10,6 +10,15 @@ def still_water(count, support):
     return _case(support, l0, [size, size, round(size + 5 * l0, 9)], [{"min": [0.0, 0.0, 0.0], "max": [size] * 3}])
 
 
+def sea(count, support):
+    """About `count` particles of water at rest, 24 deep, without sides: the same mixture of particles at any size."""
+    deep, l0 = 24, 0.01
+    size = [round(round((count / deep) ** 0.5) * l0, 9)] * 2
+    case = _case(support, l0, [*size, (deep + 5) * l0], [{"min": [0.0, 0.0, 0.0], "max": [*size, deep * l0]}])
+    case["box"]["faces"] = {f"{axis}_{side}": "periodic" for axis in "xy" for side in ("min", "max")}
+    return case
+
+
 def dam_break(spacing, support, speed=0.0, length=0.15, section=0.15):
     """Water, `length` long and `section` high and wide (m), that runs down a tank; `speed`, m/s, is its first one."""
     column = {"min": [0.0, 0.0, 0.0], "max": [length, section, section], "velocity": [speed, 0.0, 0.0]}

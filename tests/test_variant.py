@@ -1,0 +1,93 @@
+"""Kernel variants: which there are, which is chosen, and that a choice holds for the whole job."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import parsim
+from parsim import probe, variant
+from parsim.__main__ import main
+from parsim.errors import InputError
+
+CASE = Path(__file__).parent / "same_bits.toml"
+
+
+@pytest.fixture
+def empty(tmp_path, monkeypatch):
+    """A cache folder without a choice, in a process that has made none."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.delenv(variant.NAME)
+    return tmp_path / "cache" / "parsim"
+
+
+@pytest.mark.parametrize("features, names", [
+    ({"avx2": True, "avx512vl": True}, ["256", "256-gather", "512", "512-gather"]),
+    ({"avx2": True, "avx512vl": False}, ["256", "256-gather"]),
+    ({}, ["host"]),
+])  # fmt: skip
+def test_what_a_processor_can_run(features, names, monkeypatch):
+    monkeypatch.setattr(variant, "_host", lambda: ("some", features))
+    assert variant.possible() == names
+
+
+def test_a_choice_is_remembered_for_this_kind_of_processor(empty):
+    assert variant.chosen() is None
+    variant.remember(variant.possible()[-1])
+    assert variant.chosen() == variant.possible()[-1]
+    (file,) = empty.iterdir()
+    file.write_text("something else")
+    assert variant.chosen() is None
+
+
+def test_a_folder_that_cannot_be_written_is_no_error(empty):
+    empty.parent.mkdir()
+    empty.write_text("a file in its place")
+    variant.remember("256")
+    assert variant.chosen() is None
+
+
+def test_an_unknown_variant_is_refused_by_name(tmp_path, capsys):
+    with pytest.raises(InputError, match="kernel = 257: .* possible: .*; nearest: "):
+        variant.checked("257")
+    assert main(["run", str(CASE), "-o", str(tmp_path / "out"), "--kernel", "257"]) == 2
+    assert capsys.readouterr().err.count("error: kernel = 257") == 1
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("seconds, best", [
+    ({"256": 1.0, "512": 0.99}, "256"), ({"256": 1.0, "512": 0.8, "512-gather": 0.9}, "512"), ({"512": 1.0}, "256"),
+])  # fmt: skip
+def test_only_what_is_clearly_faster_is_chosen(seconds, best, monkeypatch):
+    monkeypatch.setattr(variant, "possible", lambda: ["256", "512", "512-gather"])
+    monkeypatch.setattr(probe, "measured", lambda names: seconds)
+    assert probe.fastest() == best
+
+
+def test_every_possible_variant_can_be_timed():
+    found = probe.measured(variant.possible())
+    assert list(found) == variant.possible() and min(found.values()) > 0
+
+
+def test_numba_is_told_the_variant(tmp_path):
+    script = ("import os; from parsim import variant; variant.apply(); from numba.core import config; "
+              "print(config.CPU_NAME, config.CPU_FEATURES)")
+    told = {name: subprocess.run([sys.executable, "-c", script], env=os.environ | {variant.NAME: name}, check=True,
+                                 capture_output=True, text=True).stdout for name in variant.possible()}
+    assert len(set(told.values())) == len(told)
+    assert all(("+prefer-no-gather" in text) != name.endswith("-gather") for name, text in told.items()
+               if name != "host")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", variant.possible())
+def test_same_bits_with_every_variant(name, mpirun, tmp_path, capsys):
+    ways = {"one": (1, []), "two": (2, []), "threads": (1, ["--threads", "2"])}
+    for way, (ranks, options) in ways.items():
+        done = mpirun(ranks, ["run", CASE, "-o", tmp_path / way, "--kernel", name, *options], timeout=400)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert parsim.open(tmp_path / "two").info["kernel"] == name
+    for way in ("two", "threads"):
+        assert main(["compare", str(tmp_path / "one"), str(tmp_path / way)]) == 0, capsys.readouterr().out
