@@ -8,13 +8,14 @@ import numpy as np
 
 from parsim.cells import REACH
 from parsim.jit import kernel, prange, rows
-from parsim.state import BODY, FLUID, GATE_DOWN, GATE_UP, WALL
+from parsim.state import BODY, FLUID, GATE_DOWN, GATE_UP, SURFACE, WALL
 
 _TALL = 2  # cells of a block, one above the other
 _BLOCKS_PER_TASK = 32
 _BOUNDARY = 0.6  # length of a row of a boundary particle, which holds fluid only, over that of a fluid one
 _ROOM = 1.02
-_BOUNDARY_PAIR, _PARTICLE = 3, 25  # pairs of walls and gate that cost as much as one of water; the rest, in such pairs
+_BOUNDARY_PAIR = 3  # pairs of boundary particles that cost as much as one of water
+_PARTICLE, _SURFACE, _SAMPLE = 50, 55, 120  # such pairs for any particle, more near the surface, more in a body
 
 
 class Neighbours:
@@ -51,11 +52,13 @@ class Neighbours:
             self.expected *= 1.1
         self._sort_rows(p, domain.own, domain.border)
 
-    def work(self, p, owned):
-        """Cost of the owned particles in one step, in listed fluid pairs: int64 (owned,)."""
-        pairs = (self.end - self.start)[owned]
-        seen_once = (p.kind[owned] != FLUID) & (p.body[owned] < 0)
-        return np.where(seen_once, pairs // _BOUNDARY_PAIR, pairs) + _PARTICLE
+    def work(self, domain):
+        """Cost of the owned particles of a `domain` in one step, in listed fluid pairs: int64 (owned,)."""
+        p, owned = domain.particles, domain.own
+        pairs, fluid = (self.end - self.start)[owned], p.kind[owned] == FLUID
+        work = np.where(fluid, pairs, pairs // _BOUNDARY_PAIR) + _PARTICLE
+        work += np.where(p.body[owned] >= 0, _SAMPLE, 0)
+        return work + np.where(fluid & domain.near(SURFACE, "surface")[owned], _SURFACE, 0)
 
     def _offsets(self, rows, room):
         """Where the rows of each task begin, and the end of the last: (tasks + 1,) int64."""

@@ -108,7 +108,7 @@ class Simulation:
 
     def _balance(self, move):
         with self.timers("rebuild"):
-            self.domain.balance(self.near.work(self.domain.particles, self.domain.own), move)
+            self.domain.balance(self.near.work(self.domain), move)
         self._uneven_sum += self.domain.uneven
         self._uneven_most = max(self._uneven_most, self.domain.uneven)
 
