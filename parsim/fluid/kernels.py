@@ -2,8 +2,9 @@
 
 Every sweep is in gather form: particle i sums over its own list and writes only to i. Per listed pair the two large
 sweeps take 8 gathers and 35-45 flops. They are bound by the issue of instructions: `parsim bench` finds 8 to 13 % less
-with all neighbours in the first cache, and two thirds of the time for the gathers alone. Boundary neighbours carry n and q already
-multiplied by their scale (share of a lattice volume), so that bodies sampled at another spacing weigh what they are.
+with all neighbours in the first cache, and two thirds of the time for the gathers alone. Boundary neighbours carry n
+and q already multiplied by their scale (share of a lattice volume), so that bodies sampled at another spacing weigh
+what they are.
 """
 
 import math
