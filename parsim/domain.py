@@ -148,8 +148,11 @@ class Domain:
                 self.cuts = cuts
 
     def cut_evenly(self, x, count):
-        """Cut to an equal number of particles, `count` (n,) of them at each x (n,), before anything is stored."""
-        work = np.bincount(self.grid.layer(x), count, self.grid.layers)
+        """Cut to an equal number of particles, `count` (n,) of them at each x (n,), before anything is stored.
+
+        Every rank gives its own: an x that all ranks give counts for all of them.
+        """
+        work = self.comm.sum_integers(np.bincount(self.grid.layer(x), count, self.grid.layers).astype(np.int64))
         if work.any():
             self.cuts = even_cuts(work, self.comm.size)
 

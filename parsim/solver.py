@@ -5,9 +5,11 @@ import math
 import numpy as np
 
 from parsim.comm import Comm
+from parsim.output.checkpoint import Snapshot
 from parsim.setup import Models, check_ranks, columns, water
 from parsim.timers import Timers
 
+_COUNTERS = ("time", "step_count", "dt", "speed", "rebuilds")
 _MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
 
 
@@ -18,7 +20,7 @@ class Simulation:
     and awake boundary particles of all ranks; every: all particles of all ranks, sleeping walls included.
     """
 
-    def __init__(self, case, comm):
+    def __init__(self, case, comm, snapshot=None):
         self.case, self.comm, self.timers = case, comm, Timers()
         models = self.models = Models(case, comm, self.timers)
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
@@ -26,12 +28,15 @@ class Simulation:
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
         self._uneven_sum, self._uneven_most = 0.0, 1.0
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
-        self.domain.cut_evenly(*columns(case))
-        self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
-        self._balance(True)
-        self._rebuild(self.fluid)  # with cuts that know the walls and bodies too
-        self.rebuilds, self._uneven_sum, self._uneven_most = 0, 0.0, 1.0
-        self._look()
+        if snapshot is None:
+            self.domain.cut_evenly(*columns(case))
+            self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
+            self._balance(True)
+            self._rebuild(self.fluid)  # with cuts that know the walls and bodies too
+            self.rebuilds, self._uneven_sum, self._uneven_most = 0, 0.0, 1.0
+            self._look()
+        else:
+            self._restore(snapshot)
 
     @property
     def fluid(self):
@@ -43,9 +48,34 @@ class Simulation:
         """Largest work of a rank over the mean before each rebuild: the mean of that, and the most."""
         return self._uneven_sum / self.rebuilds if self.rebuilds else 1.0, self._uneven_most
 
+    def snapshot(self):
+        """All that a restart needs, before a step that rebuilds; called on all ranks together."""
+        lost, = self.domain.count(self.domain.lost)
+        account = {"lost": lost, "uneven": [self._uneven_sum, self._uneven_most]}
+        account |= {name: getattr(self, name) for name in _COUNTERS}
+        return Snapshot(self.fluid, self.bodies.kept(), self.contacts.kept(), account)
+
+    def _restore(self, snapshot):
+        """Go on from a snapshot: the rebuild that the step after it began with is made here."""
+        for name in _COUNTERS:
+            setattr(self, name, snapshot.account[name])
+        self._uneven_sum, self._uneven_most = snapshot.account["uneven"]
+        self.domain.lost = snapshot.account["lost"] if self.comm.rank == 0 else 0
+        self.bodies.restore(snapshot.bodies)
+        self.contacts.restore(snapshot.contacts)
+        self.domain.cut_evenly(snapshot.water.x, np.ones(len(snapshot.water)))
+        self._rebuild(snapshot.water)
+
+    def rebuilds_next(self):
+        """Whether the next step begins with a rebuild; the same on every rank."""
+        return self._outrun(self._next_dt())
+
+    def _next_dt(self):
+        return min(self.scheme.time_step(self.speed), self.contacts.limit())
+
     def step(self):
         """Advance water and bodies by one time step."""
-        self.dt = dt = min(self.scheme.time_step(self.speed), self.contacts.limit())
+        self.dt = dt = self._next_dt()
         if self._outrun(dt):
             self._balance(self.rebuilds % self.case.run.balance_every == 0)
             self._rebuild(self.fluid)

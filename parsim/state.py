@@ -52,6 +52,7 @@ FIELDS = (
 )
 NAMES = tuple(field.name for field in FIELDS)
 KEPT = tuple(field.name for field in FIELDS if field.kept)
+OF_WATER = ("id", *POSITION, *VELOCITY, "n", "rate", "surface")  # kept fields that differ between particles of water
 _DTYPES = {field.name: field.dtype for field in FIELDS}
 _DEFAULTS = {"body": -1, "sample": -1, "scale": 1.0}
 

@@ -7,6 +7,8 @@ import numpy as np
 from parsim.jit import kernel
 from parsim.solid.rotation import free_turn, from_angles, matrices, matrix, scaled
 
+_KEPT = ("position", "quaternion", "velocity", "spin", "acceleration", "angular_acceleration", "water_load",
+         "contact_load", "gravity_load", "film")
 _SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners of a box
 _QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
 
@@ -41,6 +43,15 @@ class Bodies:
 
     def __len__(self):
         return len(self.mass)
+
+    def kept(self):
+        """What a restart needs: name -> array."""
+        return {name: getattr(self, name).copy() for name in _KEPT}
+
+    def restore(self, kept):
+        """Go on from what `kept` returned."""
+        for name in _KEPT:
+            getattr(self, name)[:] = kept[name]
 
     def held(self, time):
         """Which bodies do not move in a step that begins at `time`, s: (nb,) bool."""

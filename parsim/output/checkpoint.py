@@ -1,0 +1,189 @@
+"""Checkpoints: the state of a run at a step that rebuilds its lists, each one HDF5 file that proves itself whole.
+
+A file begins with a block of text: what it is, and the length and SHA-256 of all that follows, which are looked at
+before HDF5 is. Every data set has a SHA-256 of its own besides. Water stands in the order of ids, so that a file does
+not show how many ranks have written it. Data sets: `case` (TOML) and `account` (JSON: counters, and what the outputs
+hold so far) as text, `water/`, `bodies/` and `contacts/` with the kept fields.
+"""
+
+import hashlib
+import json
+import os
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from parsim.output.frames import replacing
+from parsim.state import OF_WATER, Particles
+
+FOLDER, SUFFIX = "checkpoints", ".h5"
+_KIND = b"parsim checkpoint, format 1\n"
+_BLOCK = 512  # bytes of the text; what HDF5 calls a user block
+_PIECE = 1 << 22  # bytes hashed at a time
+
+
+class Broken(Exception):
+    """A checkpoint that is not what was written; the text says why."""
+
+
+class Snapshot:
+    """The state of a run on this rank: water (Particles), bodies and contacts (dicts of arrays), account (dict)."""
+
+    def __init__(self, water, bodies, contacts, account):
+        self.water, self.bodies, self.contacts, self.account = water, bodies, contacts, account
+
+
+def write(path, case, snapshot, comm):
+    """Write a snapshot; called on all ranks together, rank 0 writes. `case`: TOML text. Raises WriteError.
+
+    At most one rank's water is in the memory of rank 0 beside its own.
+    """
+    water = _in_order(snapshot.water, comm)
+    total = int(comm.sum_integers(np.array([len(water)]))[0])
+    if comm.rank:
+        for name in OF_WATER:
+            for _ in comm.stream(getattr(water, name)):
+                pass
+        return
+    with replacing(path) as part:
+        with h5py.File(part, "w", userblock_size=_BLOCK) as file:
+            _put(file, "case", _bytes(case))
+            _put(file, "account", _bytes(json.dumps(snapshot.account)))
+            for group in ("bodies", "contacts"):
+                for name, values in getattr(snapshot, group).items():
+                    _put(file, f"{group}/{name}", values)
+            for name in OF_WATER:
+                _put_parts(file, f"water/{name}", total, comm.stream(getattr(water, name)))
+        _seal(part)
+
+
+def _in_order(water, comm):
+    """This rank's share of the water of all ranks, by ids: shares of ascending ids, each sorted."""
+    water = water.take(np.argsort(water.id))
+    if comm.size == 1:
+        return water
+    beyond = int(comm.max([float(water.id[-1]) if len(water) else 0.0])[0]) + 1
+    ends = np.searchsorted(water.id, np.arange(comm.size + 1) * beyond // comm.size)
+    ends[0], ends[-1] = 0, len(water)
+    dealt = comm.deal([water.take(slice(*pair)).pack() for pair in zip(ends[:-1], ends[1:], strict=True)])
+    water = Particles.join([Particles.unpack(buffer) for buffer in dealt])
+    return water.take(np.argsort(water.id))
+
+
+def _bytes(text):
+    return np.frombuffer(text.encode(), np.uint8)
+
+
+def _put(file, name, values):
+    values = np.ascontiguousarray(values)
+    _put_parts(file, name, len(values), [values])
+
+
+def _put_parts(file, name, total, parts):
+    """A data set of `total` rows that come in parts, and its checksum."""
+    digest, at, data = hashlib.sha256(), 0, None
+    for part in parts:
+        if data is None:
+            data = file.create_dataset(name, (total, *part.shape[1:]), part.dtype)
+        data[at : at + len(part)] = part
+        digest.update(part)
+        at += len(part)
+    if at != total:
+        raise ValueError(f"{name}: {at} of {total} rows were given")
+    data.attrs["sha256"] = digest.hexdigest()
+
+
+def _seal(path):
+    """Write the text at the beginning of a finished file."""
+    text = _KIND + b"bytes %d\nsha256 %s\n" % (path.stat().st_size, _digest(path).encode())
+    with open(path, "r+b") as file:
+        file.write(text.ljust(_BLOCK, b"\n"))
+
+
+def _digest(path):
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        file.seek(_BLOCK)
+        while piece := file.read(_PIECE):
+            digest.update(piece)
+    return digest.hexdigest()
+
+
+def verify(path):
+    """Raise Broken unless the file is what was written."""
+    try:
+        with open(path, "rb") as file:
+            text = file.read(_BLOCK)
+        size = os.path.getsize(path)
+        kind, length, digest, *_ = text.split(b"\n")
+        if kind + b"\n" != _KIND or len(text) < _BLOCK:
+            raise Broken("does not begin as a checkpoint of this version of parsim does")
+        if length != b"bytes %d" % size:
+            raise Broken(f"has {size:,} bytes, which is not what its beginning says")
+        if digest != b"sha256 " + _digest(path).encode():
+            raise Broken("its checksum is wrong")
+    except ValueError:
+        raise Broken("is too short for a checkpoint") from None
+    except OSError as error:
+        raise Broken(f"cannot be read: {error.strerror or error}") from None
+
+
+class Checkpoint:
+    """A verified checkpoint, open for reading; attributes path, case (TOML text), account, bodies, contacts.
+
+    Raises Broken.
+    """
+
+    def __init__(self, path, whole=True):
+        self.path = Path(path)
+        if whole:
+            verify(self.path)
+        with h5py.File(self.path) as file:
+            if whole:
+                file.visititems(_check)
+            self.case, account = (file[name][:].tobytes().decode() for name in ("case", "account"))
+            self.account = json.loads(account)
+            self.bodies, self.contacts = ({name: data[()] for name, data in file[group].items()}
+                                          for group in ("bodies", "contacts"))
+
+    def snapshot(self, rank, size):
+        """The share of one of `size` ranks: every rank a run of water by ids, all bodies and contacts."""
+        with h5py.File(self.path) as file:
+            group = file["water"]
+            total = len(group["id"])
+            rows = slice(total * rank // size, total * (rank + 1) // size)
+            kept = {name: group[name][rows] for name in OF_WATER}
+        return Snapshot(Particles(kept["id"].size, **kept), self.bodies, self.contacts, self.account)
+
+
+def _check(name, data):
+    if not isinstance(data, h5py.Dataset):
+        return
+    digest, rows = hashlib.sha256(), max(1, _PIECE // max(1, data.dtype.itemsize * int(np.prod(data.shape[1:]))))
+    for begin in range(0, len(data), rows):
+        digest.update(np.ascontiguousarray(data[begin : begin + rows]))
+    if data.attrs.get("sha256") != digest.hexdigest():
+        raise Broken(f"the checksum of its data set {name} is wrong")
+
+
+def listed(folder):
+    """Paths of the checkpoints in an output folder, the oldest first."""
+    return sorted(Path(folder, FOLDER).glob(f"*{SUFFIX}"), key=lambda path: (step_of(path), path.name))
+
+
+def step_of(path):
+    """Step of a checkpoint, from its name; -1 when the name does not say."""
+    number = Path(path).stem.rpartition("_")[2]
+    return int(number) if number.isdecimal() else -1
+
+
+def newest(folder):
+    """The newest whole checkpoint of an output folder, or None, and a line for each broken one that is newer."""
+    broken = []
+    for path in reversed(listed(folder)):
+        try:
+            return Checkpoint(path), broken
+        except Broken as error:
+            broken.append(f"{path}: {error}; it is left out")
+    return None, broken
