@@ -29,6 +29,10 @@ Changes = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="replace one value, e.g. spacing=0.002 or bodies.A1.density=900"),
 ]
+Threads = Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")]
+Ranks = Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")]
+Walltime = Annotated[str | None, typer.Option(
+    metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over")]
 Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
 
 
@@ -116,36 +120,74 @@ def run(
     until: Until = None,
     changes: Changes = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite an output folder")] = False,
-    threads: Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")] = None,
-    ranks: Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")] = None,
+    threads: Threads = None,
+    ranks: Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="kernel variant, in place of the fastest")] = None,
+    walltime: Walltime = None,
 ):
     """Run a case. Under mpirun or srun every rank runs this command."""
-    from parsim import variant
-
-    if threads:
-        os.environ["NUMBA_NUM_THREADS"] = str(threads)
-    loaded = _load(case, changes, until)
-    if kernel is not None:
-        os.environ[variant.NAME] = variant.checked(kernel)
+    loaded, limit = _load(case, changes, until), _settings(threads, kernel, walltime)
     if ranks:
         words = ["run", case, "-o", out, *(word for change in changes or () for word in ("--set", change))]
-        words += ["--until", repr(until)] if until is not None else []
-        words += ["--kernel", kernel] if kernel is not None else []
-        return _launched(ranks, words + ["--force"] * force)
+        return _launched(ranks, words + ["--force"] * force, until, kernel, limit)
     from parsim.warm import prepare
 
     prepare()
     from parsim.solver import run as solve
 
-    return solve(loaded, case, out, force)
+    return solve(loaded, case, out, force, limit)
 
 
-def _launched(ranks, words):
+@command
+def resume(
+    out: Folder,
+    until: Until = None,
+    threads: Threads = None,
+    ranks: Ranks = None,
+    kernel: Annotated[str | None, typer.Option(metavar="NAME", help="another kernel variant: other last bits")] = None,
+    walltime: Walltime = None,
+):
+    """Go on with a run from its newest whole checkpoint, on any number of ranks, to the same bits."""
+    from parsim import variant
+    from parsim.comm import Comm
+    from parsim.resume import find
+
+    limit = _settings(threads, kernel, walltime)
+    if ranks:
+        return _launched(ranks, ["resume", out], until, kernel, limit)
+    case, checkpoint = find(out, until, print if Comm().rank == 0 else lambda *_, **__: None)
+    if checkpoint and kernel is None:
+        os.environ[variant.NAME] = variant.checked(checkpoint.account["kernel"])
+    from parsim.warm import prepare
+
+    prepare()
+    from parsim.solver import resume as solve
+
+    return solve(case, out, checkpoint, limit)
+
+
+def _settings(threads, kernel, walltime):
+    """Hand threads and kernel variant on to this process and its children; returns the walltime in s, or None."""
+    from parsim import stop, variant
+
+    if threads:
+        os.environ["NUMBA_NUM_THREADS"] = str(threads)
+    if kernel is not None:
+        os.environ[variant.NAME] = variant.checked(kernel)
+    return None if walltime is None else stop.seconds(walltime)
+
+
+def _launched(ranks, words, until, kernel, limit):
     from parsim.launch import mpirun, world
+    from parsim.stop import age
 
     if world()[1] > 1:
         raise InputError(f"-n {ranks}: {world()[1]} processes of this command are running already; leave -n out")
+    words += ["--until", repr(until)] if until is not None else []
+    words += ["--kernel", kernel] if kernel is not None else []
+    if limit is not None:  # that of the ranks began when this process did
+        left = max(round(limit - age()), 1)
+        words += ["--walltime", f"{left // 60}:{left % 60:02d}"]
     return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)])
 
 

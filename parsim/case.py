@@ -175,6 +175,10 @@ class Output(Table):
     frames: Positive = Field(0.05, description="time between frames, s")
     series: Positive = Field(0.005, description="time between rows of the series, s")
     gauges: tuple[Gauge, ...] = Field((), description="where the water level is written")
+    checkpoints: Positive = Field(15.0, description="wall time between checkpoints, minutes; the last two are kept")
+    milestones: Positive | None = Field(
+        None, description="time between checkpoints that are kept for good, s; left out: none"
+    )
 
 
 class Case(Table):

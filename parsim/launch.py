@@ -86,7 +86,8 @@ def terminal():
     if "OMPI_COMM_WORLD_SIZE" not in os.environ:
         return os.get_terminal_size(sys.stdout.fileno()).columns or 80
     try:
-        with open(f"/proc/{os.getppid()}/fd/1", "wb", buffering=0) as stream:
+        # to append: another mode would empty the file that mpirun writes to
+        with open(f"/proc/{os.getppid()}/fd/1", "ab", buffering=0) as stream:
             return (os.get_terminal_size(stream.fileno()).columns or 80) if stream.isatty() else 0
     except OSError:
         return 0

@@ -1,12 +1,18 @@
 """The time loop: what happens in a step, when lists are rebuilt, when things are written, when the run stops."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 
+from parsim import launch
 from parsim.comm import Comm
 from parsim.output.checkpoint import Snapshot
+from parsim.output.folder import Folder
+from parsim.output.keeper import Keeper
+from parsim.output.recorder import Recorder
 from parsim.setup import Models, check_ranks, columns, water
+from parsim.stop import STOPPED, Stop
 from parsim.timers import Timers
 
 _COUNTERS = ("time", "step_count", "dt", "speed", "rebuilds")
@@ -176,23 +182,48 @@ class Simulation:
         self.speed = max(fastest, solid)
 
 
-def run(case, source, out, force=False):
-    """Run a case, read from the file `source`, to its end and write everything to the folder `out`; returns 0.
+def run(case, source, out, force=False, walltime=None):
+    """Run a case, read from the file `source`, to its end and write everything to the folder `out`.
 
+    `walltime`, s: of the job. Returns 0, or 75 when the run was stopped before its end and has left a checkpoint.
     Raises InputError for what the case cannot do on this many ranks, WriteError where nothing can be written.
     """
-    from parsim import launch
-    from parsim.output.recorder import Recorder
+    comm = _comm(case)
+    folder = Folder(out, comm)
+    folder.make(case, source, force)
+    return _advance(case, folder, Path(source).stem, walltime)
 
-    ring = case.box.faces.x_min == "periodic"
-    comm = Comm(ring)
+
+def resume(case, out, checkpoint=None, walltime=None):
+    """Go on with a run in the folder `out` from a checkpoint, or from the beginning; as `run`."""
+    comm = _comm(case)
+    folder = Folder(out, comm)
+    account = checkpoint.account if checkpoint else None
+    folder.reopen(case, account)
+    name = account["name"] if account else ""
+    return _advance(case, folder, name, walltime, account, checkpoint and checkpoint.snapshot(comm.rank, comm.size))
+
+
+def _comm(case):
+    comm = Comm(case.box.faces.x_min == "periodic")
     launch.check(comm.size)
     check_ranks(case, comm.size)
-    with Recorder(case, source, out, force, comm) as recorder:
-        simulation = Simulation(case, comm)
+    return comm
+
+
+def _advance(case, folder, name, walltime, account=None, snapshot=None):
+    with Recorder(case, folder, name, account) as recorder, Stop(walltime) as stop:
+        simulation = Simulation(case, folder.comm, snapshot)
         recorder.begin(simulation)
+        keeper = Keeper(case, recorder, stop, simulation)
         while simulation.time < case.run.until:
+            if simulation.rebuilds_next():
+                reason = keeper.look(simulation)
+                if reason:
+                    recorder.stopped(simulation, reason)
+                    return STOPPED
             simulation.step()
             recorder.watch(simulation)
         recorder.finish(simulation)
+        keeper.finish()
     return 0

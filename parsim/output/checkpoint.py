@@ -15,9 +15,10 @@ import h5py
 import numpy as np
 
 from parsim.output.frames import replacing
-from parsim.state import OF_WATER, Particles
+from parsim.state import FIELDS, OF_WATER, Particles
 
 FOLDER, SUFFIX = "checkpoints", ".h5"
+WATER_BYTES = sum(np.dtype(field.dtype).itemsize for field in FIELDS if field.name in OF_WATER)  # of one particle
 _KIND = b"parsim checkpoint, format 1\n"
 _BLOCK = 512  # bytes of the text; what HDF5 calls a user block
 _PIECE = 1 << 22  # bytes hashed at a time

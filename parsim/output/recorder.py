@@ -3,20 +3,19 @@
 import json
 import os
 import platform
-import shutil
 import time as clock
+from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 
 from parsim import __version__, variant
-from parsim.errors import InputError, WriteError
+from parsim.errors import WriteError
 from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
 from parsim.output.measure import Measure
 from parsim.output.progress import Progress
-from parsim.output.series import Table
+from parsim.output.series import Table, next_multiple
 
 _FIELDS = {"id": ("i8", ()), "velocity": ("f8", (3,)), "pressure": ("f8", ()), "class": ("u1", ()),
            "density_ratio": ("f8", ())}
@@ -33,42 +32,30 @@ TABLES = {
 
 
 class Recorder:
-    """Called by the solver: `begin`, `watch` after every step, `finish`; as a context manager it tells of failure."""
+    """Called by the solver: `begin`, `watch` after every step, at last `finish` or `stopped`.
 
-    def __init__(self, case, source, out, force, comm):
-        self.case, self.source, self.out, self.comm = case, Path(source), Path(out), comm
-        self.main = comm.rank == 0
+    As a context manager it tells of failure and gives the folder (`parsim.output.folder`) free. `account`: that of the
+    checkpoint from which the run goes on.
+    """
+
+    def __init__(self, case, folder, name="", account=None):
+        self.case, self.folder, self.out, self.name = case, folder, folder.path, name
+        self.comm, self.main = folder.comm, folder.comm.rank == 0
         self.began = clock.perf_counter()
-        refusal = comm.share(self._prepare(force) if self.main else None)
-        if refusal is not None:
-            raise refusal
-        self.frames = {"water": [], "bodies": []}
-        self.info = {"status": "running", "parsim": __version__, "started": datetime.now(UTC).isoformat()}
+        self.resumed = account
+        frames = account["frames"] if account else {"water": [], "bodies": []}
+        self.frames = {kind: [tuple(entry) for entry in entries] for kind, entries in frames.items()}
+        self.info = {"status": "running", "parsim": __version__, "started": _now(), "pieces": self._earlier()}
 
-    def _prepare(self, force):
-        """Make the folder on rank 0; returns the error instead of raising it, for every rank must hear of it."""
+    def _earlier(self):
+        """The pieces of the run that came before this one."""
+        if not self.main or not self.resumed:
+            return []
         try:
-            if self.out.exists() and not self.out.is_dir():
-                return WriteError(self.out, "there is a file of that name")
-            if self.out.is_dir() and any(self.out.iterdir()):
-                if not force:
-                    return InputError(f"OUT = {self.out}: already there and not empty; choose another folder or add "
-                                      "--force to replace it")
-                if not (self.out / "run.json").exists():
-                    return InputError(f"OUT = {self.out}: --force replaces only an earlier output of parsim (there is "
-                                      "no run.json in this folder)")
-                shutil.rmtree(self.out)
-            (self.out / "series").mkdir(parents=True, exist_ok=True)
-            (self.out / "frames").mkdir(exist_ok=True)
-            write_text(self.out / "case.toml", self.case.to_toml())
-            reference = self.source.with_name("reference.csv")
-            if reference.is_file():
-                write_text(self.out / reference.name, reference.read_text(encoding="utf-8"))
-        except OSError as error:
-            return WriteError(self.out, error.strerror or error)
-        except WriteError as error:
-            return error
-        return None
+            pieces = json.loads((self.out / "run.json").read_text(encoding="utf-8"))["pieces"]
+        except (OSError, ValueError, KeyError):
+            return []
+        return [{"ended": "killed"} | piece for piece in pieces]
 
     def __enter__(self):
         return self
@@ -77,27 +64,46 @@ class Recorder:
         if kind is not None and self.main:
             if getattr(self, "progress", None):
                 self.progress.close("failed")
-            self.info |= {"status": "failed", "error": f"{kind.__name__}: {error}"}
-            self._write_info()
+            with suppress(WriteError):  # of a full disk the error in flight tells already
+                self._end("failed", error=f"{kind.__name__}: {error}")
+        self.folder.release()
 
     def begin(self, simulation):
-        """Open the tables, write the first rows and frame."""
+        """Open the tables; write the first rows and frame, unless the run goes on."""
         self.measure = Measure(self.case, simulation)
         self.next_frame, self.next_row = simulation.time, simulation.time
+        self.particles = {"fluid": simulation.fluid_count, "active": simulation.active,
+                          "wall": len(simulation.models.walls), "body": len(simulation.models.samples)}
+        if self.resumed:
+            self.particles = self.resumed["particles"]
+            self.next_frame, self.next_row = self.resumed["next_frame"], self.resumed["next_row"]
         if self.main:
-            self._open_tables(simulation)
-            self.progress = Progress(self.case.start, self.case.run.until)
+            self._open_tables()
+            self._write_indices()
+            self.progress = Progress(simulation.time, self.case.run.until)
             self.info |= self._versions(simulation)
             self.info["start_s"] = clock.perf_counter() - self.began
+            self.info["pieces"].append({key: self.info[key] for key in ("started", "host", "ranks", "threads")}
+                                       | {"from_step": simulation.step_count})
             self._write_info()
-        self.watch(simulation)
+        if not self.resumed:
+            self.watch(simulation)
 
-    def _open_tables(self, simulation):
-        self.tables = {}
+    def _open_tables(self):
+        self.tables, step = {}, self.resumed["step_count"] if self.resumed else None
         for name, (columns, units) in TABLES.items():
             columns = ["step", "time", *(["dt"] if name == "energy" else []), *columns.split()]
             self.tables[name] = Table(self.out / "series" / f"{name}.csv", columns,
-                                      ["-", "s", *[units] * (len(columns) - 2)])
+                                      ["-", "s", *[units] * (len(columns) - 2)], resume=step)
+
+    def account(self):
+        """What a restart must know of the outputs; all that stands in them is on the disk then."""
+        if self.main:
+            for table in self.tables.values():
+                table.secure()
+        frames = {kind: list(entries) for kind, entries in self.frames.items()}
+        return {"frames": frames, "next_frame": self.next_frame, "next_row": self.next_row,
+                "particles": self.particles, "name": self.name, "kernel": variant.chosen(), "parsim": __version__}
 
     def watch(self, simulation):
         """Look at the simulation after a step; write what is due."""
@@ -105,10 +111,10 @@ class Recorder:
             self.progress.step(simulation.step_count, simulation.time, simulation.dt, simulation.active)
         with simulation.timers("output"):
             if simulation.time >= self.next_row:
-                self.next_row = _next(simulation.time, self.case.output.series)
+                self.next_row = next_multiple(simulation.time, self.case.output.series)
                 self._rows(simulation)
             if simulation.time >= self.next_frame:
-                self.next_frame = _next(simulation.time, self.case.output.frames)
+                self.next_frame = next_multiple(simulation.time, self.case.output.frames)
                 self._frame(simulation)
 
     def _rows(self, simulation):
@@ -134,9 +140,12 @@ class Recorder:
             fields = {field: getattr(simulation.bodies, field) for field in _BODY}
             write_bodies(self.out / name, *simulation.bodies.surface(), fields, time, step)
         if self.main:
-            for kind, entries in self.frames.items():
-                if entries:
-                    write_index(self.out / f"{kind}.vtkhdf.series", entries)
+            self._write_indices()
+
+    def _write_indices(self):
+        for kind, entries in self.frames.items():
+            if entries:
+                write_index(self.out / f"{kind}.vtkhdf.series", entries)
 
     def _stream(self, name, total, arrays, time, step):
         """Write the water frame through rank 0, one rank's particles after another's: bounded memory."""
@@ -153,46 +162,54 @@ class Recorder:
         """Last frame and row if they are not written yet, then the account of the run."""
         if self.frames["water"][-1][1] < simulation.time:
             self._frame(simulation)
-        self._account(simulation)
+        self._close("done", simulation)
 
-    def _account(self, simulation):
+    def stopped(self, simulation, reason):
+        """End a run that has been stopped, with a checkpoint, before its end."""
+        self._close(f"stopped ({reason})", simulation, reason=reason, go_on=f"parsim resume {self.out}")
+
+    def _close(self, words, simulation, **facts):
         wall = clock.perf_counter() - simulation.timers.start
         rows = self.measure.rows(simulation)
         if not self.main:
             return
         for table in self.tables.values():
             table.close()
-        self.progress.close("done", simulation.step_count, simulation.time)
+        self.progress.close(words, simulation.step_count, simulation.time)
         counts = dict(zip(TABLES["counts"][0].split(), rows["counts"][0], strict=True))
         cores = self.info["ranks"] * self.info["threads"]
-        self.info |= {
-            "status": "done", "steps": simulation.step_count, "time": simulation.time, "wall_s": wall,
+        self._end(words.split()[0], **facts, **{
+            "steps": simulation.step_count, "time": simulation.time, "wall_s": wall,
             "lost": counts["lost"], "leaks": {k: counts[k] for k in ("in_walls", "in_bodies", "in_gate")},
             "phases": dict(simulation.timers.seconds), "rebuilds": simulation.rebuilds,
             "uneven": dict(zip(("mean", "most"), simulation.uneven, strict=True)),
             "rate": {"active_particle_steps_per_s_per_core": self.progress.work / wall / cores,
                      "active_particle_steps": self.progress.work, "all": counts["all"]},
-        }
+        })
+
+    def _end(self, status, **facts):
+        """Note how the run has ended."""
+        self.info |= {"status": status, **facts}
+        if self.info["pieces"] and "ended" not in self.info["pieces"][-1]:
+            self.info["pieces"][-1] |= {"ended": facts.get("reason", status)} | {
+                key: facts[key] for key in ("steps", "time", "wall_s") if key in facts}
         self._write_info()
 
     def _versions(self, simulation):
         import numba
 
         return {
-            "case_name": self.source.stem, "ranks": self.comm.size, "threads": numba.get_num_threads(),
+            "case_name": self.name, "ranks": self.comm.size, "threads": numba.get_num_threads(),
             "host": platform.node(), "warnings": list(self.case.warnings()),
             "kernel": variant.chosen(), "processor": os.environ.get("NUMBA_CPU_NAME", "host"),
             "versions": {"python": platform.python_version(), "mpi": self.comm.library,
                          **{name: version(name) for name in ("numpy", "numba", "h5py", "mpi4py")}},
-            "particles": {"fluid": simulation.fluid_count, "active": simulation.active,
-                          "wall": len(simulation.models.walls), "body": len(simulation.models.samples)},
+            "particles": self.particles,
         }
 
     def _write_info(self):
         write_text(self.out / "run.json", json.dumps(self.info, indent=1) + "\n")
 
 
-def _next(time, every):
-    """The next multiple of `every` after `time`, s."""
-    due = (np.floor(time / every + 1e-9) + 1.0) * every
-    return due if time >= 0 else min(due, 0.0)
+def _now():
+    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -2,6 +2,8 @@
 
 import csv
 import io
+import math
+import os
 from pathlib import Path
 
 from parsim.errors import WriteError
@@ -39,6 +41,11 @@ class Table:
         self._waiting.seek(0)
         self._waiting.truncate()
 
+    def secure(self):
+        """Write the waiting rows and see them on the disk."""
+        self.flush()
+        self._guarded(lambda: os.fsync(self._file.fileno()))
+
     def close(self):
         """Write the waiting rows and close the file."""
         self.flush()
@@ -49,6 +56,12 @@ class Table:
             return action()
         except OSError as error:
             raise WriteError(self.path, error.strerror or error) from error
+
+
+def next_multiple(time, every):
+    """The next multiple of `every` after `time`, s; t = 0 is never passed over."""
+    due = (math.floor(time / every + 1e-9) + 1.0) * every
+    return due if time >= 0 else min(due, 0.0)
 
 
 def _rows_until(path, step):

@@ -1,0 +1,65 @@
+"""Reasons to end a run before its end, in good order: signals, and the walltime of the job."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from parsim.errors import InputError
+
+SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)
+STOPPED = 75  # exit code: a checkpoint is written, submit again
+REASONS = ("", "walltime", *(number.name for number in SIGNALS))  # by number, so that ranks can agree on the largest
+_SAME = 1.0  # s within which a second signal is the first one on another way
+_UNITS = (1.0, 60.0, 3600.0, 86400.0)
+
+
+class Stop:
+    """As a context manager it leaves the signals at the end to those who had them before. The second signal ends the process at once, but for SIGUSR1.
+
+    `walltime`, s, is that of the whole job, counted from the start of this process.
+    """
+
+    def __init__(self, walltime=None):
+        self.walltime = walltime
+        self._first = self._number = None
+        self._before = {number: signal.signal(number, self._hear) for number in SIGNALS}
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def reason(self, margin):
+        """Number in REASONS of why this process should stop, 0 to go on; `margin`, s, is what stopping takes."""
+        if self._number is not None:
+            return REASONS.index(signal.Signals(self._number).name)
+        return int(self.walltime is not None and age() + margin > self.walltime)
+
+    def _hear(self, number, _):
+        now = time.monotonic()
+        if self._first is None:
+            self._first, self._number = now, number
+        elif number != signal.SIGUSR1 and now - self._first > _SAME:
+            os._exit(128 + number)
+
+
+def age():
+    """Seconds since this process was started."""
+    ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
+    return float(Path("/proc/uptime").read_text().split()[0]) - ticks / os.sysconf("SC_CLK_TCK")
+
+
+def seconds(text):
+    """Seconds of a walltime as schedulers write it: minutes, M:S, H:M:S or D-H:M:S. Raises InputError."""
+    days, dash, rest = str(text).rpartition("-")
+    parts = rest.split(":")
+    numbers = [days, *parts] if dash else parts
+    if not all(number.isdecimal() for number in numbers) or len(parts) > 3 or (dash and len(parts) != 3):
+        raise InputError(f"walltime = {text}: must be minutes, or minutes:seconds, hours:minutes:seconds or "
+                         "days-hours:minutes:seconds, such as 12:00:00")
+    if len(numbers) == 1:
+        numbers.append("0")
+    return float(sum(int(number) * unit for number, unit in zip(reversed(numbers), _UNITS, strict=False)))
