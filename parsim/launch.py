@@ -3,12 +3,14 @@
 MPI itself is loaded only in child processes, so that looking never starts it here.
 """
 
+import ctypes
 import functools
 import os
 import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from parsim.errors import InputError
@@ -21,6 +23,8 @@ _LAUNCHERS = {
     "srun (Slurm)": ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID"),
 }
 
+_PR_SET_PDEATHSIG = 1
+SAME_SIGNAL = 1.0  # s within which a second signal is the first one on another way
 _SUM = "from mpi4py import MPI; c = MPI.COMM_WORLD; print('sum', c.allreduce(c.rank + 1), 'of', c.size)"
 _LIBRARY = """
 from mpi4py import MPI
@@ -36,6 +40,11 @@ def _started():
         if os.environ.get(size, "").isdigit() and os.environ.get(rank, "").isdigit():
             return name, int(os.environ[size]), int(os.environ[rank])
     return "", 1, 0
+
+
+def started():
+    """Whether a launcher started this process."""
+    return bool(_started()[0])
 
 
 def world():
@@ -155,18 +164,33 @@ def environment():
 def mpirun(ranks, arguments):
     """Run `arguments` (a list, the program first) as `ranks` processes and return the exit code of the job.
 
-    Signals meant for the job reach it: SIGTERM and SIGUSR1 are passed on, the terminal itself sends SIGINT.
+    SIGUSR1, SIGTERM and SIGINT come to the ranks as SIGUSR1, for mpirun leaves them no time after the others; a second
+    SIGTERM or SIGINT ends the job at once. The job is ended too when this process is killed.
     """
-    process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL)
-    before = {signal.SIGINT: signal.signal(signal.SIGINT, signal.SIG_IGN)}
-    for number in (signal.SIGTERM, signal.SIGUSR1):
-        before[number] = signal.signal(number, lambda received, _: process.send_signal(received))
+    heard = []
+
+    def hand_on(number, _):
+        if number != signal.SIGUSR1 and heard and time.monotonic() - heard[0] > SAME_SIGNAL:
+            process.terminate()
+            return
+        heard.append(time.monotonic())
+        process.send_signal(signal.SIGUSR1)
+
+    # in a process group of its own, or a terminal would send SIGINT to mpirun as well
+    process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL, process_group=0,
+                               preexec_fn=_die_with_parent)
+    before = {number: signal.signal(number, hand_on) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
     try:
         code = process.wait()
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
     return code if code >= 0 else 128 - code
+
+
+def _die_with_parent():
+    """Ask Linux to send this process SIGTERM when its parent is gone."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
 def fault(ranks=2, timeout=60):

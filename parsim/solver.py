@@ -14,6 +14,7 @@ from parsim.output.recorder import Recorder
 from parsim.setup import Models, check_ranks, columns, water
 from parsim.stop import STOPPED, Stop
 from parsim.timers import Timers
+from parsim.watch import Watch
 
 _COUNTERS = ("time", "step_count", "dt", "speed", "rebuilds")
 _MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
@@ -212,8 +213,9 @@ def _comm(case):
 
 
 def _advance(case, folder, name, walltime, account=None, snapshot=None):
-    with Recorder(case, folder, name, account) as recorder, Stop(walltime) as stop:
-        simulation = Simulation(case, folder.comm, snapshot)
+    comm = folder.comm
+    with Watch(comm, case.run.patience), Recorder(case, folder, name, account) as recorder, Stop(walltime) as stop:
+        simulation = Simulation(case, comm, snapshot)
         recorder.begin(simulation)
         keeper = Keeper(case, recorder, stop, simulation)
         while simulation.time < case.run.until:

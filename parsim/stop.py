@@ -5,19 +5,20 @@ import signal
 import time
 from pathlib import Path
 
+from parsim import launch
 from parsim.errors import InputError
 
 SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)
 STOPPED = 75  # exit code: a checkpoint is written, submit again
 REASONS = ("", "walltime", *(number.name for number in SIGNALS))  # by number, so that ranks can agree on the largest
-_SAME = 1.0  # s within which a second signal is the first one on another way
 _UNITS = (1.0, 60.0, 3600.0, 86400.0)
 
 
 class Stop:
-    """As a context manager it leaves the signals at the end to those who had them before. The second signal ends the process at once, but for SIGUSR1.
+    """Listens from when it is made; as a context manager it gives the signals back at the end.
 
-    `walltime`, s, is that of the whole job, counted from the start of this process.
+    A second signal ends the process at once, but for SIGUSR1. `walltime`, s, is that of the whole job, counted from the
+    start of this process.
     """
 
     def __init__(self, walltime=None):
@@ -42,7 +43,7 @@ class Stop:
         now = time.monotonic()
         if self._first is None:
             self._first, self._number = now, number
-        elif number != signal.SIGUSR1 and now - self._first > _SAME:
+        elif number != signal.SIGUSR1 and now - self._first > launch.SAME_SIGNAL:
             os._exit(128 + number)
 
 

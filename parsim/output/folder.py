@@ -105,8 +105,8 @@ def _check_room(case, out):
     place = next(path for path in (out, *out.absolute().parents) if path.is_dir())
     needed, free = room_for(case), shutil.disk_usage(place).free
     if needed > free:
-        raise WriteError(out, f"the output will take about {needed / 1e9:.2g} GB and {free / 1e9:.2g} GB are free; write "
-                              "fewer frames (output.frames), or elsewhere")
+        raise WriteError(out, f"the output will take about {needed / 1e9:.2g} GB and {free / 1e9:.2g} GB are free; "
+                              "write fewer frames (output.frames), or elsewhere")
 
 
 def room_for(case):

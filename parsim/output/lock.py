@@ -37,8 +37,8 @@ class Lock:
             if not _locked(file) or self._alive(file):
                 text = _holder(file)
                 file.close()
-                raise InputError(f"OUT = {self.path.parent}: another job writes it ({text}); wait for its end. If it is "
-                                 f"dead for certain, remove {self.path}")
+                raise InputError(f"OUT = {self.path.parent}: another job writes it ({text}); wait for its end. If it "
+                                 f"is dead for certain, remove {self.path}")
             if _is_at(file, self.path):  # else its holder removed it just now
                 self._file = file
         self._file.truncate(0)
