@@ -3,17 +3,13 @@
 import functools
 import os
 import sys
-import time
-import traceback
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from parsim import __version__
+from parsim import __version__, exits
 from parsim.errors import InputError, WriteError
-
-DONE, FAILED, BAD_INPUT, CANNOT_WRITE, INTERRUPTED = 0, 1, 2, 74, 130
 
 app = typer.Typer(
     help="Free-surface flow carrying solids. SI units; exit codes: 0 done, 1 failed, 2 bad input, 3 a comparison "
@@ -41,8 +37,8 @@ def main(arguments=None):
     try:
         app(args=arguments, prog_name="parsim")
     except SystemExit as ending:
-        return ending.code if isinstance(ending.code, int) else FAILED
-    return DONE
+        return ending.code if isinstance(ending.code, int) else exits.FAILED
+    return exits.DONE
 
 
 def command(function):
@@ -50,61 +46,10 @@ def command(function):
 
     @functools.wraps(function)
     def guarded(*positional, **named):
-        raise typer.Exit(_exit_code(functools.partial(function, *positional, **named)))
+        raise typer.Exit(exits.code_of(functools.partial(function, *positional, **named)))
 
     app.command()(guarded)
     return function
-
-
-def _exit_code(work):
-    from parsim.launch import world
-
-    rank, size = world()
-    try:
-        return work() or DONE
-    except InputError as error:
-        if rank == 0:
-            print(*(f"error: {message}" for message in error.messages), sep="\n", file=sys.stderr, flush=True)
-        return _together(BAD_INPUT)
-    except WriteError as error:
-        print(f"error: {error}", file=sys.stderr, flush=True)
-        return _together(CANNOT_WRITE)
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    except BrokenPipeError:
-        raise  # the reader of a pipe has left: the command line ends quietly
-    except Exception:
-        print(f"error: rank {rank} of {size} failed", file=sys.stderr)
-        traceback.print_exc()
-        return _abort(FAILED)
-
-
-def _world():
-    """The world communicator if MPI is running here with several ranks, else None."""
-    mpi = sys.modules.get("mpi4py.MPI")
-    return mpi.COMM_WORLD if mpi and mpi.Is_initialized() and mpi.COMM_WORLD.Get_size() > 1 else None
-
-
-def _together(code, patience=2.0):
-    """Return `code` once every rank is about to end; end the job if one is not, for it would wait for this one."""
-    world = _world()
-    if world:
-        everyone, start = world.Ibarrier(), time.monotonic()
-        while not everyone.Test():
-            if time.monotonic() - start > patience:
-                return _abort(code)
-            time.sleep(0.01)
-    return code
-
-
-def _abort(code):
-    """End all ranks at once; a rank that fails alone would leave the others waiting for ever."""
-    world = _world()
-    if world:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        world.Abort(code)
-    return code
 
 
 def _load(case, changes, until=None):
@@ -156,6 +101,8 @@ def resume(
     if ranks:
         return _launched(ranks, ["resume", out], until, kernel, limit)
     case, checkpoint = find(out, until, print if Comm().rank == 0 else lambda *_, **__: None)
+    if case is None:
+        return exits.DONE
     if checkpoint and kernel is None:
         os.environ[variant.NAME] = variant.checked(checkpoint.account["kernel"])
     from parsim.warm import prepare

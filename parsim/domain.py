@@ -50,7 +50,8 @@ class Domain:
 
     `particles` holds halos and owned, `own` the slice of owned ones, `stack` the pieces they are stored in, `first` the
     offsets of the cells of all pieces, `border` (owned,) bool those that may see a halo. `uneven` is the largest work
-    of a rank over the mean, as `balance` has seen it last.
+    of a rank over the mean, as `balance` has seen it last. `lost` counts this rank's particles that have left the grid,
+    `gone` are those that the last rebuild has found outside.
     """
 
     def __init__(self, grid, comm, sources, timers=None):
@@ -169,6 +170,7 @@ class Domain:
             else:
                 outside |= ~((field >= self.grid.low[axis]) & (field < self.grid.high[axis]))
         self.lost += int(outside.sum())
+        self.gone = fluid.take(outside)
         return fluid.take(~outside) if outside.any() else fluid
 
     def _migrate(self, fluid):

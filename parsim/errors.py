@@ -9,6 +9,10 @@ class InputError(Exception):
         super().__init__("\n".join(self.messages))
 
 
+class RunError(Exception):
+    """A run that has gone wrong in its physics; the message says where and what may help. Exit code 1."""
+
+
 class WriteError(Exception):
     """A file or folder that cannot be written. Exit code 74."""
 

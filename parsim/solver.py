@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from parsim import launch
+from parsim import guards, launch
 from parsim.comm import Comm
+from parsim.errors import RunError
 from parsim.output.checkpoint import Snapshot
 from parsim.output.folder import Folder
 from parsim.output.keeper import Keeper
@@ -24,7 +25,7 @@ class Simulation:
     """One case in flight on this rank. `step` advances it; everything else looks at its attributes.
 
     time, s; step_count; dt, s, of the last step; speed, m/s, largest of the water and of body surfaces; active: fluid
-    and awake boundary particles of all ranks; every: all particles of all ranks, sleeping walls included.
+    and awake boundary particles of all ranks; gone: on rank 0, rows of what has left the box and is not told of yet.
     """
 
     def __init__(self, case, comm, snapshot=None):
@@ -33,7 +34,7 @@ class Simulation:
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
         self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
-        self._uneven_sum, self._uneven_most = 0.0, 1.0
+        self._uneven_sum, self._uneven_most, self.gone = 0.0, 1.0, []
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
         if snapshot is None:
             self.domain.cut_evenly(*columns(case))
@@ -83,6 +84,8 @@ class Simulation:
     def step(self):
         """Advance water and bodies by one time step."""
         self.dt = dt = self._next_dt()
+        if error := guards.collapsed(self, dt):
+            raise error
         if self._outrun(dt):
             self._balance(self.rebuilds % self.case.run.balance_every == 0)
             self._rebuild(self.fluid)
@@ -162,11 +165,24 @@ class Simulation:
                 self.models.samples.find(domain, near)
                 self.models.films.find(domain)
         with self.timers("sums"):
-            self.active, self.fluid_count = domain.count(near.fluid.size + near.boundary.size, near.fluid.size)
+            numbers = near.fluid.size + near.boundary.size, near.fluid.size, len(domain.gone)
+            self.active, self.fluid_count, gone = domain.count(*numbers)
+        if gone:
+            self._note_gone()
         p, at = domain.particles, near.fluid
         self._start = np.stack([p.x[at], p.y[at], p.z[at]])
         self.moved, self._solid_moved, self.since = 0.0, 0.0, 0
         self.rebuilds += 1
+
+    def _note_gone(self):
+        """Collect, on rank 0, what the last rebuild has found outside the box."""
+        p = self.domain.gone
+        when = np.full(len(p), self.step_count + 1), np.full(len(p), self.time)
+        rows = np.stack([*when, p.id, p.x, p.y, p.z, p.u, p.v, p.w], 1)
+        rows = np.concatenate([np.zeros((0, 9)), *self.comm.stream(rows)])
+        self.gone.extend(rows[np.argsort(rows[:, 2])])
+        if self.case.run.outside == "stop":
+            raise guards.outside(self, rows)
 
     def _look(self):
         """Largest speed, and how far anything has moved since the lists were built."""
@@ -174,10 +190,9 @@ class Simulation:
             fastest, moved = self.scheme.extremes(self.domain.particles, self.near, self._start)
         with self.timers("sums"):
             fastest, moved = map(float, self.domain.max(fastest, moved))
-        if not fastest < self.scheme.sound:
-            raise FloatingPointError(f"step {self.step_count}, t = {self.time:.6g} s: the water reached {fastest:g} "
-                                     f"m/s, the speed of sound of the model is {self.scheme.sound:g} m/s")
         solid = max(self.bodies.surface_speed(), self.gate.velocity(self.time) if self.gate else 0.0)
+        if not max(fastest, solid) < self.scheme.sound:
+            raise guards.runaway(self)
         self._solid_moved += self.dt * solid
         self.moved = max(moved, self._solid_moved)
         self.speed = max(fastest, solid)
@@ -224,8 +239,16 @@ def _advance(case, folder, name, walltime, account=None, snapshot=None):
                 if reason:
                     recorder.stopped(simulation, reason)
                     return STOPPED
-            simulation.step()
+            _step(simulation, recorder)
             recorder.watch(simulation)
         recorder.finish(simulation)
         keeper.finish()
     return 0
+
+
+def _step(simulation, recorder):
+    try:
+        simulation.step()
+    except RunError:
+        recorder.fault(simulation)
+        raise

@@ -25,8 +25,8 @@ def solver(monkeypatch):
     fake = types.ModuleType("parsim.solver")
     fake.calls, fake.ending = [], 0
 
-    def run(case, source, out, force):
-        fake.calls.append((case, source, out, force))
+    def run(case, source, out, force, walltime):
+        fake.calls.append((case, source, out, force, walltime))
         if isinstance(fake.ending, BaseException):
             raise fake.ending
         return fake.ending
@@ -39,10 +39,10 @@ def solver(monkeypatch):
 def test_run_hands_the_complete_case_to_the_solver(solver, tmp_path):
     case = write(tmp_path)["3d"]
     words = ["run", str(case), "-o", "out", "--until", "0.25", "--set", "bodies.A1.density=900", "--set", "run.until=9"]
-    assert main([*words, "--force"]) == 0
-    (given, source, out, force), = solver.calls
+    assert main([*words, "--force", "--walltime", "1:00:05"]) == 0
+    (given, source, out, force, walltime), = solver.calls
     assert given == load(case, ["bodies.A1.density=900", "run.until=0.25"])
-    assert source == case and str(out) == "out" and force is True
+    assert source == case and str(out) == "out" and force is True and walltime == 3605.0
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
     (ranks, arguments), = started
     assert ranks == 2 and arguments[:4] == [sys.executable, "-P", "-m", "parsim"] and not solver.calls
     assert main(arguments[4:]) == 0
-    assert solver.calls == [(load(BLOCKS, ["spacing=0.01", "title=x = y", "run.until=0.1"]), BLOCKS, Path("a b"), True)]
+    assert solver.calls == [(load(BLOCKS, ["spacing=0.01", "title=x = y", "run.until=0.1"]), BLOCKS, Path("a b"), True, None)]
 
 
 def test_n_checks_the_case_first_and_is_refused_inside_a_job(capsys, monkeypatch):
@@ -189,7 +189,7 @@ from mpi4py import MPI
 from parsim.__main__ import main
 from parsim.errors import InputError, WriteError
 
-def run(case, source, out, force):
+def run(case, source, out, force, walltime):
     endings = {"fault": ValueError("lost"), "write": WriteError("out", "full"), "together": InputError("no")}
     if MPI.COMM_WORLD.rank == 1 or sys.argv[1] == "together":
         raise endings[sys.argv[1]]

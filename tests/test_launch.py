@@ -114,7 +114,7 @@ def test_a_hanging_job_is_ended(mpirun, program):
 
 FAILS = """
 import sys
-from parsim.__main__ import _exit_code
+from parsim.exits import code_of
 from parsim.comm import Comm
 from parsim.errors import InputError
 
@@ -124,7 +124,7 @@ def work():
         raise {error}("one rank fails")
     comm.max([1.0])
 
-sys.exit(_exit_code(work))
+sys.exit(code_of(work))
 """
 
 

@@ -47,9 +47,12 @@ def measure(order):
 
 
 def _recorder(case, comm, simulation, folder):
+    from parsim.output.folder import Folder
     from parsim.output.recorder import Recorder
 
-    recorder = Recorder(case, "bench", Path(folder) / "out", False, comm)
+    place = Folder(Path(folder) / "out", comm)
+    place.make(case, "bench", False)
+    recorder = Recorder(case, place)
     recorder.begin(simulation)
     return recorder
 

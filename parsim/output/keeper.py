@@ -59,7 +59,7 @@ class Keeper:
 
     def _snapshot(self, simulation):
         snapshot = simulation.snapshot()
-        snapshot.account |= self.recorder.account()
+        snapshot.account |= self.recorder.account(simulation)
         return snapshot
 
     def _write(self, snapshot, milestone):

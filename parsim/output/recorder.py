@@ -28,6 +28,7 @@ TABLES = {
     "loads": ("body kind fx fy fz tx ty tz", "N, N m"),
     "gauges": ("gauge x y level", "m"),
     "front": ("x", "m"),
+    "lost": ("id x y z u v w", "m, m/s"),
 }
 
 
@@ -96,9 +97,10 @@ class Recorder:
             self.tables[name] = Table(self.out / "series" / f"{name}.csv", columns,
                                       ["-", "s", *[units] * (len(columns) - 2)], resume=step)
 
-    def account(self):
+    def account(self, simulation):
         """What a restart must know of the outputs; all that stands in them is on the disk then."""
         if self.main:
+            self._tell_gone(simulation)
             for table in self.tables.values():
                 table.secure()
         frames = {kind: list(entries) for kind, entries in self.frames.items()}
@@ -121,10 +123,21 @@ class Recorder:
         rows = self.measure.rows(simulation)
         if not self.main:
             return
+        self._tell_gone(simulation)
         for name, lines in rows.items():
             for line in lines:
                 self.tables[name].row(simulation.step_count, simulation.time, *line)
             self.tables[name].flush()
+
+    def _tell_gone(self, simulation):
+        for step, time, ident, *rest in simulation.gone:
+            self.tables["lost"].row(int(step), float(time), int(ident), *map(float, rest))
+        self.tables["lost"].flush()
+        simulation.gone.clear()
+
+    def fault(self, simulation):
+        """The frame of a run that goes wrong in this step."""
+        self._frame(simulation)
 
     def _frame(self, simulation):
         number, step, time = len(self.frames["water"]), simulation.step_count, simulation.time
@@ -173,6 +186,7 @@ class Recorder:
         rows = self.measure.rows(simulation)
         if not self.main:
             return
+        self._tell_gone(simulation)
         for table in self.tables.values():
             table.close()
         self.progress.close(words, simulation.step_count, simulation.time)

@@ -75,6 +75,19 @@ class Bodies:
         """Bound of the speed of any point of any body, m/s: |v| + |w| R."""
         return float(largest_speed(self.half, self.velocity, self.spin))
 
+    def at_fault(self, limit):
+        """Names of the bodies that are not slower than `limit`, m/s, at every point."""
+        return [name for name, speed in zip(self.names, self._speeds(), strict=True) if not speed < limit]
+
+    def fastest(self):
+        """Name and bound of the speed, m/s, of the fastest body."""
+        speeds = self._speeds()
+        return self.names[int(np.argmax(speeds))], float(np.max(speeds))
+
+    def _speeds(self):
+        return [largest_speed(*(each[b : b + 1] for each in (self.half, self.velocity, self.spin)))
+                for b in range(len(self))]
+
     def kinetic_energy(self):
         """Kinetic energy of all bodies, J (2D: per metre of width)."""
         return float(kinetic(self.mass, self.inertia, self.quaternion, self.velocity, self.spin))
@@ -139,13 +152,16 @@ def drift(mass, inertia, velocity, spin, dt, position, quaternion):
 
 @kernel
 def largest_speed(half, velocity, spin):
-    """Largest |v| + |w| R over all bodies."""
+    """Largest |v| + |w| R over all bodies, infinite where one is not a number."""
     largest = 0.0
     for b in range(len(half)):
         v, w, h = velocity[b], spin[b], half[b]
         radius = math.sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2])
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-        largest = max(largest, speed + radius * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
+        speed += radius * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+        if not speed < np.inf:
+            return np.inf
+        largest = max(largest, speed)
     return largest
 
 
