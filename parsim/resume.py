@@ -14,8 +14,8 @@ from parsim.output.reader import open as open_run
 def find(out, until=None, tell=print):
     """(case, checkpoint) to go on with in the output folder `out`; `until` (s) replaces the end of the case.
 
-    No case: the run is done. No checkpoint: it was stopped before the first one and begins again. `tell` prints that, and
-    which checkpoints are broken. Raises InputError where there is nothing to go on with.
+    No case: the run is done. No checkpoint: it was stopped before the first one and begins again. `tell` prints that,
+    and which checkpoints are broken. Raises InputError where there is nothing to go on with.
     """
     run = open_run(out)
     folder = run.folder

@@ -9,10 +9,12 @@ import functools
 import hashlib
 import os
 import sys
+import tempfile
 from difflib import get_close_matches
 from importlib.metadata import version
 from pathlib import Path
 
+from parsim import launch
 from parsim.errors import InputError
 
 # features added to the host's; the gather instruction is slower than scalar loads on many hosts, by microcode, and
@@ -83,7 +85,7 @@ def apply():
     if name != "host":
         changes = [f"{'+' if on else '-'}{feature}" for feature, on in VARIANTS[name].items()]
         os.environ.update(NUMBA_CPU_NAME=cpu, NUMBA_CPU_FEATURES=",".join([features.flatten(), *changes]))
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(_folder() / source_hash()))
+    os.environ["NUMBA_CACHE_DIR"] = str(_cache())
     os.environ.setdefault("NUMBA_NUM_THREADS", _threads())
 
 
@@ -105,6 +107,41 @@ def source_hash():
         if b"parsim.jit" in text or path.name in ("jit.py", "variant.py"):
             digest.update(f"{path.absolute()} {path.stat().st_mtime_ns}".encode() + text)
     return digest.hexdigest()[:16]
+
+
+def mark(folder):
+    """The file in a cache folder that says that the machine code of this process is complete there."""
+    return Path(folder, f"complete-{code()}")
+
+
+def _cache():
+    """Folder for the machine code: the first that holds it or can be written, of the user's and a temporary one."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    first = Path(given) if given else _folder()
+    if first.name != source_hash():  # else the parent process has been here
+        first = first / source_hash()
+    folder = first
+    for folder in (first, _spare() / source_hash()):
+        if mark(folder).exists() or _writable(folder):
+            break
+    if folder != first and launch.world()[0] == 0:
+        print(f"warning: the kernel cache {first} can be neither read nor written; using {folder}", file=sys.stderr,
+              flush=True)
+    return folder
+
+
+def _spare():
+    return Path(tempfile.gettempdir(), f"parsim-{os.geteuid()}")
+
+
+def _writable(folder):
+    """Whether files can be made in `folder`, which is made, by this user alone."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder.stat().st_uid == os.geteuid()
+    except OSError:
+        return False
 
 
 def _folder():

@@ -5,10 +5,12 @@ the cache: the last bit of a result would tell a first run from a second, and on
 code that it compiled itself, and the ranks of a cold start do not compile the same thing side by side.
 """
 
+import json
 import os
 import subprocess
 import sys
 import time
+import zlib
 from pathlib import Path
 
 from parsim import launch, variant
@@ -24,6 +26,8 @@ _CASE = {
     "bodies": [{"name": name, "shape": {"size": [0.03, 0.04, 0.02]}, "density": 600.0, "material": "wood",
                 "position": [x, 0.03, 0.05]} for name, x in (("one", 0.03), ("two", 0.0605))],
 }  # fmt: skip
+_PERIODIC = {"box": {"max": [0.2, 0.06, 0.1], "faces": {"y_min": "periodic", "y_max": "periodic"}}, "gate": None,
+             "bodies": [], "output": {"gauges": [{"name": "one", "x": 0.05}]}}
 
 
 def prepare():
@@ -37,21 +41,44 @@ def prepare():
     comm = Comm()
     os.environ[variant.NAME] = variant.checked(comm.share(_chosen() if comm.rank == 0 else None))
     variant.apply()
-    mark = _mark()
-    if mark is None or mark.exists():
+    mark = variant.mark(os.environ["NUMBA_CACHE_DIR"])
+    if _whole(mark):
         return
     local = next((int(os.environ[name]) for name in _LOCAL if name in os.environ), launch.world()[0])
     if local == 0:
-        if launch.world()[0] == 0:
-            print("compiling the kernels: once per version, about a minute", flush=True)
-        environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
-        subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True)
-        mark.touch()
+        _compile(mark)
     start = time.monotonic()
-    while not mark.exists():
+    while not _whole(mark):
         if time.monotonic() - start > PATIENCE:
             raise TimeoutError(f"{mark} has not appeared in {PATIENCE:g} s: is the kernel cache shared or writable?")
         time.sleep(0.1)
+
+
+def _compile(mark):
+    if launch.world()[0] == 0:
+        reason = "the cache is damaged" if mark.exists() else "once per version"
+        print(f"compiling the kernels: {reason}, about a minute", flush=True)
+    for path in _code(mark.parent):  # a compiler that was killed may have left half a file
+        path.unlink()
+    environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
+    subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True)
+    sums = {str(path.relative_to(mark.parent)): zlib.crc32(path.read_bytes()) for path in _code(mark.parent)}
+    draft = mark.with_suffix(f".{os.getpid()}")
+    draft.write_text(json.dumps(sums), encoding="utf-8")
+    draft.replace(mark)
+
+
+def _whole(mark):
+    """Whether the machine code that `mark` tells of is there as it was written."""
+    try:
+        sums = json.loads(mark.read_text(encoding="utf-8"))
+        return all(zlib.crc32(Path(mark.parent, name).read_bytes()) == sum for name, sum in sums.items())
+    except (OSError, ValueError, AttributeError):
+        return False
+
+
+def _code(folder):
+    return sorted(path for path in folder.rglob("*") if path.suffix in (".nbi", ".nbc"))
 
 
 def _chosen():
@@ -65,16 +92,6 @@ def _chosen():
     return name
 
 
-def _mark():
-    """The file that says that the cache is complete; None where the cache cannot be written."""
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return None
-    return folder / f"complete-{variant.code()}" if os.access(folder, os.W_OK) else None
-
-
 def exercise():
     """Run a small case with everything in it for a few steps, which compiles and caches, or loads, every kernel."""
     from parsim.case import parse
@@ -82,11 +99,12 @@ def exercise():
     from parsim.output.measure import Measure
     from parsim.solver import Simulation
 
-    case = parse(_CASE)
-    simulation = Simulation(case, Comm())
-    for _ in range(3):
-        simulation.step()
-    Measure(case, simulation).rows(simulation)
+    for data in (_CASE, _CASE | _PERIODIC):
+        case = parse(data)
+        simulation = Simulation(case, Comm())
+        for _ in range(3):
+            simulation.step()
+        Measure(case, simulation).rows(simulation)
 
 
 if __name__ == "__main__":

@@ -88,7 +88,8 @@ def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
     (ranks, arguments), = started
     assert ranks == 2 and arguments[:4] == [sys.executable, "-P", "-m", "parsim"] and not solver.calls
     assert main(arguments[4:]) == 0
-    assert solver.calls == [(load(BLOCKS, ["spacing=0.01", "title=x = y", "run.until=0.1"]), BLOCKS, Path("a b"), True, None)]
+    case = load(BLOCKS, ["spacing=0.01", "title=x = y", "run.until=0.1"])
+    assert solver.calls == [(case, BLOCKS, Path("a b"), True, None)]
 
 
 def test_n_checks_the_case_first_and_is_refused_inside_a_job(capsys, monkeypatch):

@@ -91,3 +91,30 @@ def test_same_bits_with_every_variant(name, mpirun, tmp_path, capsys):
     assert parsim.open(tmp_path / "two").info["kernel"] == name
     for way in ("two", "threads"):
         assert main(["compare", str(tmp_path / "one"), str(tmp_path / way)]) == 0, capsys.readouterr().out
+
+
+def run_once(cache, out, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    line = [sys.executable, "-m", "parsim", "run", CASE, "-o", out, "--until", "0.01"]
+    return subprocess.run(line, capture_output=True, text=True)
+
+
+def test_a_damaged_cache_is_made_anew(tmp_path, monkeypatch):
+    assert run_once(tmp_path / "cache", tmp_path / "one", monkeypatch).returncode == 0
+    damaged = next((tmp_path / "cache").rglob("*momentum*.nbi"))
+    damaged.write_text("garbage")
+    ran = run_once(tmp_path / "cache", tmp_path / "two", monkeypatch)
+    assert ran.returncode == 0, ran.stderr
+    assert "the cache is damaged" in ran.stdout
+    assert main(["compare", str(tmp_path / "one"), str(tmp_path / "two")]) == 0
+    assert "compiling" not in run_once(tmp_path / "cache", tmp_path / "three", monkeypatch).stdout
+
+
+def test_a_cache_that_cannot_be_written_is_replaced_with_a_warning(tmp_path, monkeypatch):
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    (tmp_path / "file").write_text("in the way")
+    ran = run_once(tmp_path / "file", tmp_path / "out", monkeypatch)
+    assert ran.returncode == 0, ran.stderr
+    assert "can be neither read nor written; using" in ran.stderr
+    assert list(tmp_path.glob("parsim-*/*/complete-*"))
