@@ -252,5 +252,15 @@ def options(
     """Options of the program as a whole."""
 
 
+def program():
+    """The command of the shell: `main`, but for what HDF5 does at the end of a process when a disk was full."""
+    code = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if code == exits.CANNOT_WRITE:
+        os._exit(code)
+    sys.exit(code)
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    program()

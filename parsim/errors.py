@@ -18,4 +18,7 @@ class WriteError(Exception):
 
     def __init__(self, path, reason):
         self.path, self.reason = path, reason
-        super().__init__(f"cannot write {path}: {reason}")
+        super().__init__(path, reason)  # so that it can be sent from rank to rank
+
+    def __str__(self):
+        return f"cannot write {self.path}: {self.reason}"

@@ -2,7 +2,7 @@
 
 Ranks stand in a ring; each tells the next one, now and then, how far it is. A rank that is not waiting for a message
 and gets no further for `patience` seconds, or is silent for so long, is taken for hung by the next, which ends the job
-and says which rank it was. Those that wait for it are not to blame.
+and says which rank it was. Those that wait for it are not to blame, unless all wait for one another.
 """
 
 import os
@@ -14,6 +14,7 @@ import traceback
 from parsim import launch
 
 _LOOKS = 10  # in the patience
+_DEADLOCK = 3.0  # times the patience, for all ranks waiting
 _LONGEST = 5.0  # s between looks
 _FRAMES = 6  # of the stack of a rank that hangs
 _ORPHAN = 1.0  # s between looks at the launcher
@@ -45,8 +46,8 @@ class Watch:
 
     def _run(self):
         every = min(self._patience / _LOOKS, _LONGEST)
-        sent = since = busy = time.monotonic()
-        calls, heard = -1, None
+        sent = since = moved = time.monotonic()
+        calls, heard, told = -1, None, False
         while not self._end.wait(min(every, _ORPHAN)):
             if self._parent not in (None, os.getppid()):
                 self._leave("the launcher of this job is gone")
@@ -62,11 +63,13 @@ class Watch:
                 since, heard = now, news
             if now - since > self._patience:
                 self._accuse(heard)
-            if self._comm.waiting or self._comm.calls != calls:
-                calls, busy = self._comm.calls, now
-            elif now - busy > 0.5 * self._patience:
+            if self._comm.calls != calls:
+                calls, moved, told = self._comm.calls, now, False
+            elif now - moved > _DEADLOCK * self._patience:
+                self._give_up()
+            elif now - moved > 0.5 * self._patience and not (self._comm.waiting or told):
                 self._confess()
-                busy = now
+                told = True
 
     def _accuse(self, heard):
         state = "is silent" if heard is None else "is stuck or silent"
@@ -79,6 +82,11 @@ class Watch:
         stack = "".join(traceback.format_stack(sys._current_frames().get(self._main))[-_FRAMES:])
         print(f"rank {self._comm.rank} has made no progress for {0.5 * self._patience:g} s; it is at\n{stack}",
               file=sys.stderr, flush=True)
+
+    def _give_up(self):
+        print(f"error: rank {self._comm.rank} has waited {_DEADLOCK * self._patience:g} s for a message, and so have "
+              "the others: it ends the job", file=sys.stderr, flush=True)
+        self._comm.abort(1)
 
     def _leave(self, why):
         print(f"error: rank {self._comm.rank}: {why}", file=sys.stderr, flush=True)

@@ -1,14 +1,17 @@
 """Kernel variants: which there are, which is chosen, and that a choice holds for the whole job."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
 
 import parsim
-from parsim import probe, variant
+from parsim import probe, variant, warm
 from parsim.__main__ import main
 from parsim.errors import InputError
 
@@ -19,7 +22,7 @@ CASE = Path(__file__).parent / "same_bits.toml"
 def empty(tmp_path, monkeypatch):
     """A cache folder without a choice, in a process that has made none."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.delenv(variant.NAME)
+    monkeypatch.delenv(variant.NAME, raising=False)
     return tmp_path / "cache" / "parsim"
 
 
@@ -100,6 +103,7 @@ def run_once(cache, out, monkeypatch):
     return subprocess.run(line, capture_output=True, text=True)
 
 
+@pytest.mark.slow
 def test_a_damaged_cache_is_made_anew(tmp_path, monkeypatch):
     assert run_once(tmp_path / "cache", tmp_path / "one", monkeypatch).returncode == 0
     damaged = next((tmp_path / "cache").rglob("*momentum*.nbi"))
@@ -114,7 +118,25 @@ def test_a_damaged_cache_is_made_anew(tmp_path, monkeypatch):
 def test_a_cache_that_cannot_be_written_is_replaced_with_a_warning(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     (tmp_path / "file").write_text("in the way")
+    (tmp_path / f"parsim-{os.geteuid()}").mkdir(mode=0o700)
+    variant.apply()
+    cache = Path(os.environ["NUMBA_CACHE_DIR"])  # of this process: spares the test a compilation
+    shutil.copytree(cache, tmp_path / f"parsim-{os.geteuid()}" / cache.name)
     ran = run_once(tmp_path / "file", tmp_path / "out", monkeypatch)
     assert ran.returncode == 0, ran.stderr
     assert "can be neither read nor written; using" in ran.stderr
     assert list(tmp_path.glob("parsim-*/*/complete-*"))
+
+
+def test_a_mark_vouches_for_the_files_it_was_made_for(tmp_path):
+    (tmp_path / "part").mkdir()
+    code, mark = tmp_path / "part" / "a.nbc", tmp_path / "complete-0"
+    code.write_bytes(b"code")
+    assert not warm._whole(mark)
+    mark.write_text(json.dumps({"part/a.nbc": zlib.crc32(b"code")}))
+    assert warm._whole(mark)
+    for damage in (b"cods", b"", None):
+        code.write_bytes(damage) if damage is not None else code.unlink()
+        assert not warm._whole(mark)
+    mark.write_text("{")
+    assert not warm._whole(mark)

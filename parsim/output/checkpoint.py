@@ -20,6 +20,7 @@ from parsim.state import FIELDS, OF_WATER, Particles
 FOLDER, SUFFIX = "checkpoints", ".h5"
 WATER_BYTES = sum(np.dtype(field.dtype).itemsize for field in FIELDS if field.name in OF_WATER)  # of one particle
 _KIND = b"parsim checkpoint, format 1\n"
+_OVERHEAD = 65536  # bytes of a file besides its water, bodies not counted
 _BLOCK = 512  # bytes of the text; what HDF5 calls a user block
 _PIECE = 1 << 22  # bytes hashed at a time
 
@@ -47,7 +48,7 @@ def write(path, case, snapshot, comm):
             for _ in comm.stream(getattr(water, name)):
                 pass
         return
-    with replacing(path) as part:
+    with replacing(path, _OVERHEAD + WATER_BYTES * total) as part:
         with h5py.File(part, "w", userblock_size=_BLOCK) as file:
             _put(file, "case", _bytes(case))
             _put(file, "account", _bytes(json.dumps(snapshot.account)))

@@ -5,9 +5,12 @@ under a temporary name, flushed to the disk and renamed, so that a file that is 
 and stored plainly: they hardly compress (a fifth smaller for twenty times the time); only the connectivity is packed.
 """
 
+import errno
 import json
+import math
 import os
 import re
+import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -20,20 +23,24 @@ VERSION = (2, 3)
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
 PACKED = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "chunks": True}
 PART = 65536
+_OVERHEAD = 65536  # bytes of a file besides its points
 HDF5_REASON = re.compile(r"error message = '([^']*)'")
 NO_CELLS = np.zeros(0, np.int64), np.zeros(1, np.int64)
 
 
 @contextmanager
-def replacing(path):
+def replacing(path, size=0):
     """Give a temporary name beside ``path``; on success flush it to the disk and rename it, on failure remove it.
 
-    Raises WriteError where the operating system (or HDF5) refuses to write; other exceptions pass through.
+    A disk without room for ``size`` bytes is refused beforehand, for HDF5 does not bear one that fills up. Raises
+    WriteError where the operating system (or HDF5) refuses to write; other exceptions pass through.
     """
     path = Path(path)
     part = path.with_name(f".{path.name}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        if shutil.disk_usage(path.parent).free < size:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         yield part
         _flush(part)
         os.replace(part, path)
@@ -88,7 +95,8 @@ class WaterFrame:
 
     def __init__(self, path, total, fields, time, step):
         self.total, self.filled = int(total), 0
-        self._guard = replacing(path)
+        row = 40 + sum(np.dtype(dtype).itemsize * math.prod(shape) for dtype, shape in fields.values())
+        self._guard = replacing(path, _OVERHEAD + row * self.total)
         part = self._guard.__enter__()
         with self._cleaned():
             self._file = h5py.File(part, "w")

@@ -13,7 +13,6 @@ from parsim.stop import REASONS
 KEPT = 2  # checkpoints, besides the milestones
 _RESERVE = 2.0  # s before the walltime, besides what a checkpoint has taken
 _SPEED = 50e6  # bytes/s at which the first checkpoint is expected to be written
-_DISK_EVERY = 10.0  # s between looks at the free space
 
 
 class Keeper:
@@ -28,7 +27,7 @@ class Keeper:
         self.written, self.seconds, self.last = 0, 0.0, None
         self.bytes = simulation.fluid_count * checkpoint.WATER_BYTES
         self._cost, self._pace = self.bytes / _SPEED, 0.0
-        self._looked = self._saved = self._measured = clock.perf_counter()
+        self._looked = self._saved = clock.perf_counter()
         self._milestone = self._next_milestone(simulation.time)
 
     def look(self, simulation):
@@ -38,14 +37,14 @@ class Keeper:
         reason = self.stop.reason(_RESERVE + 3.0 * self._pace + 2.0 * self._cost)
         regular = now - self._saved > 60.0 * self.case.output.checkpoints
         milestone = simulation.time >= self._milestone
-        reason, regular, room = self.comm.max([reason, self.recorder.main and regular, self._crowded(now)])
+        reason, regular, room = self.comm.max([reason, self.recorder.main and regular, self._crowded()])
         if reason or regular or milestone or room:
             self._write(self._snapshot(simulation), milestone)
         elif self.case.run.until - simulation.time < 2.0 * simulation.dt * self.case.run.rebuild_at_most:
             self.last = self._snapshot(simulation)
         if room:
             raise WriteError(self.recorder.out, f"the disk is nearly full; stopped with a checkpoint. Make room for "
-                             f"{2 * self.bytes / 1e6:.0f} MB and more, then: parsim resume {self.recorder.out}")
+                             f"{2 * self.bytes / 1e6:.1f} MB and more, then: parsim resume {self.recorder.out}")
         return REASONS[int(reason)]
 
     def finish(self):
@@ -81,9 +80,6 @@ class Keeper:
         for path in regular[:-KEPT]:
             path.unlink(missing_ok=True)
 
-    def _crowded(self, now):
-        """Whether the disk has no room for two more checkpoints; looked at by rank 0, now and then."""
-        if not self.recorder.main or now - self._measured < _DISK_EVERY:
-            return False
-        self._measured = now
-        return shutil.disk_usage(self.recorder.out).free < 2 * self.bytes
+    def _crowded(self):
+        """Whether the disk has no room for two more checkpoints; rank 0 looks."""
+        return self.recorder.main and shutil.disk_usage(self.recorder.out).free < 2 * self.bytes
