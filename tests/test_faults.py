@@ -54,7 +54,7 @@ def writing(out):
 def test_five_pieces_are_one_run(whole, tmp_path, started, capsys):
     out = tmp_path / "out"
 
-    by_walltime = started(["run", CASE, "-o", out, "--walltime", "0:06"], 2)
+    by_walltime = started(["run", CASE, "-o", out, "--walltime", "0:05"], 2)
     assert by_walltime.end() == 75
     assert status(out) == "stopped" and (contacts(out) or time_of(out) < 0.01)  # the machine may be slow
 
