@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from parsim import __version__, exits
+from parsim import __version__, exits, stop
 from parsim.errors import InputError, WriteError
 
 app = typer.Typer(
@@ -115,7 +115,7 @@ def resume(
 
 def _settings(threads, kernel, walltime):
     """Hand threads and kernel variant on to this process and its children; returns the walltime in s, or None."""
-    from parsim import stop, variant
+    from parsim import variant
 
     if threads:
         os.environ["NUMBA_NUM_THREADS"] = str(threads)
@@ -126,16 +126,15 @@ def _settings(threads, kernel, walltime):
 
 def _launched(ranks, words, until, kernel, limit):
     from parsim.launch import mpirun, world
-    from parsim.stop import age
 
     if world()[1] > 1:
         raise InputError(f"-n {ranks}: {world()[1]} processes of this command are running already; leave -n out")
     words += ["--until", repr(until)] if until is not None else []
     words += ["--kernel", kernel] if kernel is not None else []
     if limit is not None:  # that of the ranks began when this process did
-        left = max(round(limit - age()), 1)
+        left = max(round(limit - stop.age()), 1)
         words += ["--walltime", f"{left // 60}:{left % 60:02d}"]
-    return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)])
+    return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)], stop.early())
 
 
 @command
@@ -157,10 +156,13 @@ def check(
 @command
 def info(out: Folder):
     """Say what an output folder holds."""
+    from parsim.output.lock import held
     from parsim.output.reader import open as open_run
 
     found = open_run(out)
     told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}
+    if told.get("status") == "running" and not held(out):
+        told["status"] = "killed, or lost with its machine; `parsim resume` goes on"
     told |= {key: _flat(value) for key, value in found.info.items() if value and isinstance(value, dict | list)}
     frames = found.times("water")
     told["frames"] = f"{len(frames)}, {frames[0]:g} to {frames[-1]:g} s" if len(frames) else "none"
@@ -254,6 +256,7 @@ def options(
 
 def program():
     """The command of the shell: `main`, but for what HDF5 does at the end of a process when a disk was full."""
+    stop.listen()
     code = main()
     sys.stdout.flush()
     sys.stderr.flush()

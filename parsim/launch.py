@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -24,6 +25,7 @@ _LAUNCHERS = {
 }
 
 _PR_SET_PDEATHSIG = 1
+_STARTING = 3.0  # s after which every rank listens to signals
 SAME_SIGNAL = 1.0  # s within which a second signal is the first one on another way
 _SUM = "from mpi4py import MPI; c = MPI.COMM_WORLD; print('sum', c.allreduce(c.rank + 1), 'of', c.size)"
 _LIBRARY = """
@@ -161,26 +163,30 @@ def environment():
     return variables
 
 
-def mpirun(ranks, arguments):
+def mpirun(ranks, arguments, stopped=False):
     """Run `arguments` (a list, the program first) as `ranks` processes and return the exit code of the job.
 
     SIGUSR1, SIGTERM and SIGINT come to the ranks as SIGUSR1, for mpirun leaves them no time after the others; a second
-    SIGTERM or SIGINT ends the job at once. The job is ended too when this process is killed.
+    SIGTERM or SIGINT ends the job at once. `stopped`: SIGUSR1 has come already. The job is ended too when this process
+    is killed.
     """
-    heard = []
+    heard, began = [], time.monotonic()
 
     def hand_on(number, _):
         if number != signal.SIGUSR1 and heard and time.monotonic() - heard[0] > SAME_SIGNAL:
             process.terminate()
             return
         heard.append(time.monotonic())
-        process.send_signal(signal.SIGUSR1)
+        # ranks that do not listen yet would die of it
+        threading.Timer(max(began + _STARTING - heard[-1], 0.0), process.send_signal, [signal.SIGUSR1]).start()
 
     # in a process group of its own, or a terminal would send SIGINT to mpirun as well
     process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL, process_group=0,
                                preexec_fn=_die_with_parent)
     before = {number: signal.signal(number, hand_on) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
     try:
+        if stopped:
+            hand_on(signal.SIGUSR1, None)
         code = process.wait()
     finally:
         for number, handler in before.items():

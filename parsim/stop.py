@@ -14,6 +14,19 @@ REASONS = ("", "walltime", *(number.name for number in SIGNALS))  # by number, s
 _UNITS = (1.0, 60.0, 3600.0, 86400.0)
 
 
+_early = []  # signals that came before anything could be done about them
+
+
+def listen():
+    """Note SIGUSR1 from now on, which would end a process that does not yet listen to it."""
+    signal.signal(signal.SIGUSR1, lambda number, _: _early.append(number))
+
+
+def early():
+    """Whether a signal has been noted since `listen`."""
+    return bool(_early)
+
+
 class Stop:
     """Listens from when it is made; as a context manager it gives the signals back at the end.
 
@@ -23,7 +36,7 @@ class Stop:
 
     def __init__(self, walltime=None):
         self.walltime = walltime
-        self._first = self._number = None
+        self._first, self._number = (time.monotonic(), _early[0]) if _early else (None, None)
         self._before = {number: signal.signal(number, self._hear) for number in SIGNALS}
 
     def __enter__(self):

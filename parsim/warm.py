@@ -61,7 +61,8 @@ def _compile(mark):
     for path in _code(mark.parent):  # a compiler that was killed may have left half a file
         path.unlink()
     environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
-    subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True)
+    # in a process group of its own: mpirun sends signals to all of a rank's
+    subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True, process_group=0)
     sums = {str(path.relative_to(mark.parent)): zlib.crc32(path.read_bytes()) for path in _code(mark.parent)}
     draft = mark.with_suffix(f".{os.getpid()}")
     draft.write_text(json.dumps(sums), encoding="utf-8")

@@ -82,7 +82,7 @@ def test_one_rank_tells_of_bad_input_and_all_end_alike(capsys, monkeypatch, rank
 
 def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
     started = []
-    monkeypatch.setattr(launch, "mpirun", lambda ranks, arguments: started.append((ranks, arguments)) or 3)
+    monkeypatch.setattr(launch, "mpirun", lambda ranks, arguments, stopped: started.append((ranks, arguments)) or 3)
     words = ["run", str(BLOCKS), "-o", "a b", "--set", "spacing=0.01", "--set", "title=x = y", "--until", "1e-1"]
     assert main([*words, "--force", "-n", "2"]) == 3
     (ranks, arguments), = started

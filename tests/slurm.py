@@ -1,0 +1,119 @@
+"""A Slurm of one node on the loopback address, for tests: munged, slurmctld and slurmd in a folder of their own."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
+_PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
+_CONFIG = """
+ClusterName=parsim
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={ports[0]}
+SlurmdPort={ports[1]}
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket,cred_expire=5
+CryptoType=crypto/munge
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+MpiDefault=none
+ReturnToService=2
+JobRequeue=1
+KillWait=5
+MinJobAge=300
+SchedulerParameters=sched_interval=1,sched_min_interval=0,batch_sched_delay=0
+NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} State=UNKNOWN
+PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP OverSubscribe=FORCE:4
+"""
+
+
+def missing():
+    """Why Slurm cannot be started here, "" when it can."""
+    if os.geteuid():
+        return "only root may start Slurm's daemons"
+    absent = [name for name in PROGRAMS if not shutil.which(name, path=_PATH)]
+    return f"not installed: {', '.join(absent)}" if absent else ""
+
+
+class Slurm:
+    """Started when it is made, in `folder`; `close` ends it. `environment` is what its commands need."""
+
+    def __init__(self, folder):
+        self.folder, self._daemons = Path(folder), []
+        host = socket.gethostname().split(".")[0]
+        (self.folder / "state").mkdir()
+        (self.folder / "spool").mkdir()
+        config = self.folder / "slurm.conf"
+        config.write_text(_CONFIG.format(host=host, folder=self.folder, ports=_free_ports(2), cores=os.cpu_count()))
+        self.environment = {**os.environ, "PATH": _PATH, "SLURM_CONF": str(config)}
+        key = self.folder / "munge.key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o600)
+        self.folder.chmod(0o755)
+        place = [f"--{kind}-file={self.folder}/munge.{kind}" for kind in ("key", "pid", "log", "seed")]
+        self._start(["munged", "--foreground", "--force", f"--socket={self.folder}/munge.socket", *place])
+        self._wait(lambda: (self.folder / "munge.socket").exists(), 10)
+        self._start(["slurmctld", "-D"])
+        self._start(["slurmd", "-D"])
+        self._wait(lambda: "idle" in self.run("sinfo", "--noheader", "--format", "%t"), 30)
+
+    def run(self, *words):
+        """What a command of Slurm prints."""
+        ran = subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=30)
+        return ran.stdout + ran.stderr
+
+    def state(self, job):
+        """State of a job, and how often it was started again."""
+        fields = dict(word.partition("=")[::2] for word in self.run("scontrol", "show", "job", job).split())
+        return fields.get("JobState", "gone"), int(fields.get("Restarts", 0)), fields.get("ExitCode", "")
+
+    def close(self):
+        """End jobs and daemons."""
+        self.run("scancel", "--user", "root")
+        time.sleep(0.5)
+        for daemon in reversed(self._daemons):
+            daemon.send_signal(signal.SIGTERM)
+            try:
+                daemon.wait(10)
+            except subprocess.TimeoutExpired:
+                daemon.kill()
+                daemon.wait()
+
+    def _start(self, words):
+        log = open(self.folder / f"{words[0]}.out", "w")
+        self._daemons.append(subprocess.Popen(words, env=self.environment, stdout=log, stderr=log,
+                                              stdin=subprocess.DEVNULL))
+
+    def _wait(self, happened, seconds):
+        begin = time.monotonic()
+        while not happened():
+            if time.monotonic() - begin > seconds or any(daemon.poll() is not None for daemon in self._daemons):
+                logs = "\n".join(path.read_text()[-2000:] for path in self.folder.glob("*.out"))
+                self.close()
+                raise RuntimeError(f"Slurm does not start:\n{logs}")
+            time.sleep(0.1)
+
+
+def _free_ports(count):
+    sockets = [socket.socket() for _ in range(count)]
+    for each in sockets:
+        each.bind(("127.0.0.1", 0))
+    ports = [each.getsockname()[1] for each in sockets]
+    for each in sockets:
+        each.close()
+    return ports

@@ -1,0 +1,188 @@
+"""The job script under a real Slurm, and that for PBS with stand-ins for its commands."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import slurm
+
+import parsim
+from jobs import CASE, time_of
+from parsim import variant
+from parsim.__main__ import main
+
+ROOT = Path(__file__).parents[1]
+PATIENCE = 600.0
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout whose environment is that of this process, and a case that outlasts one stretch."""
+    root = tmp_path / "checkout"
+    shutil.copytree(ROOT / "jobs", root / "jobs")
+    (root / ".venv" / "bin").mkdir(parents=True)
+    python = root / ".venv" / "bin" / "python"
+    python.write_text(f'#!/bin/sh\nexport PYTHONPATH="{ROOT}"\nexec "{sys.executable}" "$@"\n')
+    python.chmod(0o755)
+    shutil.copy(CASE, root / "survive.toml")
+    (root / "long.toml").write_text('extends = "survive.toml"\n[run]\nuntil = 2.0\n[output]\nframes = 0.1\n')
+    (root / "table.csv").write_text("water.viscosity,run.until\n1e-6,0.02\n2e-6,0.03\n")
+    return root
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """A running Slurm."""
+    if reason := slurm.missing():
+        pytest.skip(reason)
+    running = slurm.Slurm(tmp_path_factory.mktemp("slurm"))
+    yield running
+    running.close()
+
+
+def submit(cluster, checkout, *words):
+    """Submit jobs/slurm.sh; returns the number of the job."""
+    variant.apply()  # names the kernel cache of this process, which spares the job a compilation
+    options = [f"--chdir={checkout}", "--parsable", "--output=job.log"]
+    environment = cluster.environment | {"NUMBA_CACHE_DIR": os.environ["NUMBA_CACHE_DIR"]}
+    ran = subprocess.run(["sbatch", *options, *map(str, words)], cwd=checkout, env=environment, capture_output=True,
+                         text=True)
+    assert ran.returncode == 0, ran.stderr
+    return ran.stdout.strip()
+
+
+def ended(cluster, job):
+    """Wait for the end of a job: (state, restarts, exit code)."""
+    begin = time.monotonic()
+    while (state := cluster.state(job))[0] in ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING", "REQUEUED"):
+        assert time.monotonic() - begin < PATIENCE, state
+        time.sleep(0.5)
+    return state
+
+
+def check_pieces(checkout, restarts, reasons, whole, capsys):
+    """The pieces of a requeued run are one run."""
+    log = (checkout / "job.log").read_text()
+    print(log)
+    assert restarts >= 1 and log.count("back into the queue") == restarts
+    assert "parsim resume out -n 2 --walltime" in log and "done: t = 2" in log
+    pieces = parsim.open(checkout / "out").info["pieces"]
+    assert len(pieces) == restarts + 1 and {piece["ended"] for piece in pieces[:-1]} <= reasons
+    assert main(["run", str(checkout / "long.toml"), "-o", str(whole)]) == 0
+    assert main(["compare", str(whole), str(checkout / "out")]) == 0, capsys.readouterr().out
+
+
+def test_a_job_goes_through_its_signal_and_the_queue_to_the_end(cluster, checkout, tmp_path, capsys):
+    job = submit(cluster, checkout, "-n", "2", "-t", "5", "jobs/slurm.sh", "long.toml", "out")
+    for stretch in (0, 1):
+        begin = time.monotonic()
+        while time_of(checkout / "out") < 0.2 + 0.4 * stretch:
+            assert time.monotonic() - begin < PATIENCE
+            time.sleep(0.05)
+        cluster.run("scancel", "--batch", "--signal=USR1", job)  # as Slurm itself does before the walltime
+    state, restarts, code = ended(cluster, job)
+    assert (state, code) == ("COMPLETED", "0:0"), (checkout / "job.log").read_text()
+    check_pieces(checkout, restarts, {"SIGUSR1"}, tmp_path / "whole", capsys)
+
+
+@pytest.mark.slow
+def test_a_job_goes_through_its_walltime_and_the_queue_to_the_end(cluster, checkout, tmp_path, capsys):
+    case = checkout / "long.toml"
+    case.write_text(case.read_text().replace("until = 2.0", "until = 20.0").replace("frames = 0.1", "frames = 1.0"))
+    job = submit(cluster, checkout, "-n", "2", "-t", "1", "--signal=B:USR1@0", "jobs/slurm.sh", "long.toml", "out")
+    state, restarts, code = ended(cluster, job)
+    assert (state, code) == ("COMPLETED", "0:0"), (checkout / "job.log").read_text()
+    check_pieces(checkout, restarts, {"walltime"}, tmp_path / "whole", capsys)
+
+
+def test_a_table_makes_an_array_of_runs(cluster, checkout):
+    job = submit(cluster, checkout, "-n", "1", "-t", "5", "--array=1-3", "--output=job-%a.log", "jobs/slurm.sh",
+                 "survive.toml", "out", "table.csv")
+    states = [ended(cluster, f"{job}_{task}") for task in (1, 2, 3)]
+    assert [state[0] for state in states] == ["COMPLETED", "COMPLETED", "FAILED"]
+    assert [parsim.open(checkout / f"out-{task}").case["run"]["until"] for task in (1, 2)] == [0.02, 0.03]
+    assert "row 3 of table.csv has 0 values for 2 keys" in (checkout / "job-3.log").read_text()
+    assert not (checkout / "out-3").exists()
+
+
+def test_a_checkout_without_an_environment_is_told(cluster, checkout):
+    shutil.rmtree(checkout / ".venv")
+    state, _, code = ended(cluster, submit(cluster, checkout, "jobs/slurm.sh", "long.toml"))
+    assert (state, code) == ("FAILED", "2:0")
+    assert "run `bash jobs/local.sh` once" in (checkout / "job.log").read_text()
+
+
+PARSIM = """#!/bin/bash
+# notes how parsim was called, leaves a checkpoint, and ends as the test wants
+printf '%s\\n' "$*" >>"$CALLS"
+mkdir -p out/checkpoints && touch out/case.toml "out/checkpoints/checkpoint_$RANDOM.h5"
+exit "$FAKE_CODE"
+"""
+QSTAT = """#!/bin/bash
+cat <<'TOLD'
+Job Id: 7.server
+    resources_used.walltime = 00:10:00
+    queue = workq
+    Resource_List.select = 2:ncpus=2:mpiprocs=2
+    Resource_List.walltime = 01:30:00
+TOLD
+"""
+
+
+@pytest.fixture
+def pbs(checkout, tmp_path):
+    """`pbs(code, ...)`: jobs/pbs.sh run dry, parsim ending with `code`: exit code, what was called, what was said."""
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (checkout / ".venv" / "bin" / "python").write_text(PARSIM)
+    for name, text in (("qstat", QSTAT), ("qsub", '#!/bin/sh\necho "qsub $*" >>"$CALLS"\n')):
+        (programs / name).write_text(text)
+        (programs / name).chmod(0o755)
+    (tmp_path / "nodes").write_text("one\none\ntwo\ntwo\n")
+
+    def run(code, **variables):
+        calls = tmp_path / "calls"
+        calls.unlink(missing_ok=True)
+        environment = {"PATH": f"{programs}:{os.environ['PATH']}", "CALLS": str(calls), "FAKE_CODE": str(code),
+                       "PBS_JOBID": "7.server", "PBS_NODEFILE": str(tmp_path / "nodes"), "PBS_O_WORKDIR": str(checkout)}
+        ran = subprocess.run(["bash", checkout / "jobs" / "pbs.sh"], env=environment | variables, cwd="/",
+                             capture_output=True, text=True, timeout=60)
+        return ran.returncode, calls.read_text().splitlines() if calls.exists() else [], ran.stderr
+
+    return run
+
+
+def test_pbs_starts_then_goes_on_and_submits_what_is_left(pbs):
+    code, calls, said = pbs(75, CASE="long.toml", OUT="out")
+    assert code == 75 and "submitting what is left" in said
+    assert calls == [
+        "-P -m parsim run long.toml -o out -n 4 --walltime 0:4800",
+        "qsub -q workq -l select=2:ncpus=2:mpiprocs=2 -l walltime=01:30:00 "
+        "-v CASE=long.toml,OUT=out,TABLE=,ROW=,PARSIM=. ./jobs/pbs.sh",
+    ]
+    code, calls, _ = pbs(0, CASE="long.toml", OUT="out")
+    assert code == 0 and calls == ["-P -m parsim resume out -n 4 --walltime 0:4800"]
+
+
+@pytest.mark.parametrize("code", [1, 2, 74])
+def test_pbs_submits_nothing_after_a_failure(pbs, code):
+    assert pbs(code, CASE="long.toml", OUT="out")[0] == code
+    assert len(pbs(code, CASE="long.toml", OUT="out")[1]) == 1
+
+
+def test_pbs_takes_a_row_of_a_table(pbs):
+    _, calls, _ = pbs(0, CASE="long.toml", OUT="other", TABLE="table.csv", PBS_ARRAY_INDEX="2")
+    assert calls[0].startswith("-P -m parsim run long.toml -o other-2 --set water.viscosity=2e-6 --set run.until=0.03 ")
+    assert "a table needs an array job" in pbs(0, CASE="long.toml", TABLE="table.csv")[2]
+    assert pbs(0)[0] == 2
+
+
+@pytest.mark.skipif(not shutil.which("shellcheck"), reason="shellcheck is not installed")
+def test_shellcheck_finds_nothing():
+    scripts = [*(ROOT / "jobs").glob("*.sh"), *(ROOT / "tests").glob("*.sh"), ROOT / ".ci" / "run"]
+    ran = subprocess.run(["shellcheck", "-x", *scripts], capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stdout
