@@ -18,7 +18,7 @@ def read(path, inside=()):
     parent = data.pop("extends", None)
     if parent is None:
         return data
-    if not isinstance(parent, str):
+    if not isinstance(parent, str) or "\0" in parent:
         raise InputError(f"{path}: extends = {parent!r}: must be the path of a case file, as text")
     return _merged(read(path.parent / parent, (*inside, path.resolve())), data)
 

@@ -1,11 +1,14 @@
 """The errors that a user can cause, with the exit code each one ends in."""
 
 
+_LONGEST = 1000  # characters of a message
+
+
 class InputError(Exception):
-    """Bad input; carries every message found at once. Exit code 2."""
+    """Bad input; carries every message found at once, each a line of bounded length. Exit code 2."""
 
     def __init__(self, messages):
-        self.messages = [messages] if isinstance(messages, str) else list(messages)
+        self.messages = [_line(message) for message in ([messages] if isinstance(messages, str) else messages)]
         super().__init__("\n".join(self.messages))
 
 
@@ -22,3 +25,10 @@ class WriteError(Exception):
 
     def __str__(self):
         return f"cannot write {self.path}: {self.reason}"
+
+
+def _line(message):
+    """A message on one line, without the middle of what somebody wrote much too long."""
+    line = "".join(letter if letter.isprintable() else f"\\x{ord(letter):02x}" for letter in message)
+    half = _LONGEST // 2
+    return line if len(line) <= _LONGEST else f"{line[:half]} ... {line[-half:]}"

@@ -10,6 +10,8 @@ from parsim.case import load
 BROKEN = {
     "unknown key in a table": ("3d", ["water.suport=3"], ["water.suport: unknown key", "did you mean water.support?"]),
     "unknown key of a body": ("3d", ["bodies.A1.densty=3"], ["bodies.A1.densty: unknown key", "bodies.A1.density?"]),
+    "edge of a body that is nothing": ("3d", ["bodies.A1.shape.size=[5e-324,0.05,0.02]"],
+                                       ["bodies.A1.shape.size.0 = 5e-324: must be at least 1e-09"]),
     "key in the wrong table": ("3d", ["until=3.0"], ["until: unknown key", "did you mean run.until?"]),
     "unknown table": ("3d", ["wind.speed=3.0"], ["wind: unknown key", "allowed: title, dimensions"]),
     "key of another table": ("3d", ["run.restitution=0.5"], ["run.restitution: unknown key; did you mean"]),
@@ -96,6 +98,7 @@ UNREADABLE = {
     "bytes": (b"\xff\xfe\x00", ["not a text file in UTF-8"]),
     "extends itself": ('extends = "case.toml"\n', ["extends = loops", "case.toml -> case.toml"]),
     "extends nothing": ('extends = "other.toml"\n', ["other.toml: no such file"]),
+    "extends a path that is none": ('extends = "a\\u0000b"\n', ["must be the path of a case file"]),
     "extends a number": ("extends = 1\n", ["extends = 1: must be the path of a case file"]),
 }
 

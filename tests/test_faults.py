@@ -142,7 +142,7 @@ def test_one_bad_rank_ends_the_job(disturbed, how, rank, said):
     job.until(lambda: time_of(out) >= 0.0)
     begin = time.monotonic()
     assert job.end() not in (0, 75)
-    assert time.monotonic() - begin < (40.0 if how in ("sleeps", "stops", "waits") else 15.0)
+    assert time.monotonic() - begin < (40.0 if how in ("sleeps", "stops", "waits") else 10.0)
     assert said in job.said()
     assert gone(job)
     if how == "sleeps":

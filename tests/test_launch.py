@@ -101,6 +101,15 @@ def test_the_terminal_that_open_mpi_gives_its_ranks_is_not_taken_for_one(mpirun,
     assert ran.stdout.split() == ["columns", "0"] * 2, ran.stderr
 
 
+def test_what_is_in_a_log_stays_there(program, tmp_path):
+    log = tmp_path / "log"
+    log.write_text("earlier\n")
+    with open(log, "a") as file:
+        line = launch.command(2, [sys.executable, program("from parsim import launch; print(launch.terminal())")])
+        subprocess.run(line, env=launch.environment(), stdout=file, stdin=subprocess.DEVNULL, check=True)
+    assert log.read_text().replace("\0", "").split() == ["earlier", "0", "0"]
+
+
 def test_a_hanging_job_is_ended(mpirun, program):
     script = program("import time; print('hangs', flush=True); time.sleep(60)")
     began = time.monotonic()
