@@ -7,6 +7,7 @@ code that it compiled itself, and the ranks of a cold start do not compile the s
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 import time
@@ -63,7 +64,7 @@ def _compile(mark):
     environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
     # in a process group of its own: mpirun sends signals to all of a rank's
     subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True, process_group=0)
-    sums = {str(path.relative_to(mark.parent)): zlib.crc32(path.read_bytes()) for path in _code(mark.parent)}
+    sums = {str(path.relative_to(mark.parent)): _sum(path) for path in _code(mark.parent)}
     draft = mark.with_suffix(f".{os.getpid()}")
     draft.write_text(json.dumps(sums), encoding="utf-8")
     draft.replace(mark)
@@ -73,9 +74,22 @@ def _whole(mark):
     """Whether the machine code that `mark` tells of is there as it was written."""
     try:
         sums = json.loads(mark.read_text(encoding="utf-8"))
-        return all(zlib.crc32(Path(mark.parent, name).read_bytes()) == sum for name, sum in sums.items())
+        return all(_sum(Path(mark.parent, name)) == sum for name, sum in sums.items())
     except (OSError, ValueError, AttributeError):
         return False
+
+
+def _sum(path):
+    """Checksum of a file of machine code; of an index, to which Numba may add, only whether it can be read."""
+    if path.suffix == ".nbc":
+        return zlib.crc32(path.read_bytes())
+    try:
+        with open(path, "rb") as file:
+            pickle.load(file)
+            pickle.loads(file.read())
+    except Exception:  # whatever a damaged pickle raises
+        return None
+    return 0
 
 
 def _code(folder):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -138,5 +139,11 @@ def test_a_mark_vouches_for_the_files_it_was_made_for(tmp_path):
     for damage in (b"cods", b"", None):
         code.write_bytes(damage) if damage is not None else code.unlink()
         assert not warm._whole(mark)
+    index = tmp_path / "part" / "a.nbi"
+    code.write_bytes(b"code")
+    mark.write_text(json.dumps({"part/a.nbc": zlib.crc32(b"code"), "part/a.nbi": 0}))
+    for entries, good in (({1: 2}, True), ({1: 2, 3: 4}, True), (None, False)):
+        index.write_bytes(pickle.dumps("0.68") + pickle.dumps(entries) if entries else b"garbage")
+        assert warm._whole(mark) is good
     mark.write_text("{")
     assert not warm._whole(mark)
