@@ -133,7 +133,7 @@ def disturbed(tmp_path, started):
 @pytest.mark.parametrize(("how", "rank", "said"), [
     ("sleeps", 1, "rank 1 of 3 has made no progress for 5 s"),
     ("stops", 0, "rank 0 of 3 has made no progress for 5 s"),
-    ("waits", 1, "has waited 15 s for a message"),
+    pytest.param("waits", 1, "has waited 15 s for a message", marks=pytest.mark.slow),
     ("raises", 1, "broken on purpose"),
     ("dies", 2, "rank 2"),
 ])  # fmt: skip
@@ -242,7 +242,7 @@ program()
 """
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.slow), 2])
 @pytest.mark.parametrize("victim", ["frames", "checkpoints"])
 def test_a_disk_that_fills_up_in_the_middle_of_a_file(small_disk, tmp_path, started, capsys, victim, ranks):
     out, code = small_disk / "out", tmp_path / "fills.py"
