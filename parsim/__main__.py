@@ -100,7 +100,7 @@ def resume(
     limit = _settings(threads, kernel, walltime)
     if ranks:
         return _launched(ranks, ["resume", out], until, kernel, limit)
-    case, checkpoint = find(out, until, print if Comm().rank == 0 else lambda *_, **__: None)
+    case, checkpoint = Comm().first(find, out, until, kernel)
     if case is None:
         return exits.DONE
     if checkpoint and kernel is None:
@@ -163,7 +163,10 @@ def info(out: Folder):
     told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}
     if told.get("status") == "running" and not held(out):
         told["status"] = "killed, or lost with its machine; `parsim resume` goes on"
-    told |= {key: _flat(value) for key, value in found.info.items() if value and isinstance(value, dict | list)}
+    told["pieces"] = "; ".join(f"from step {piece['from_step']} on {piece['ranks']} ranks: {piece.get('ended', '')}"
+                               for piece in found.info.get("pieces", ()))
+    told |= {key: _flat(value) for key, value in found.info.items()
+             if value and key != "pieces" and isinstance(value, dict | list)}
     frames = found.times("water")
     told["frames"] = f"{len(frames)}, {frames[0]:g} to {frames[-1]:g} s" if len(frames) else "none"
     told["series"] = ", ".join(found.series_names) or "none"

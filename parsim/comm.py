@@ -5,6 +5,8 @@ import functools
 import numpy as np
 from mpi4py import MPI
 
+from parsim.errors import InputError, WriteError
+
 
 def waits(method):
     """Note while `method` of a Comm may wait for other ranks that it does: `parsim.watch` looks at that."""
@@ -108,6 +110,19 @@ class Comm:
     def share(self, item):
         """What rank 0 holds, on every rank."""
         return self._mpi.bcast(item)
+
+    def first(self, work, *arguments):
+        """What `work` returns on rank 0, which alone does it, on every rank; so are its InputError and WriteError."""
+        result = error = None
+        if self.rank == 0:
+            try:
+                result = work(*arguments)
+            except (InputError, WriteError) as refusal:
+                error = refusal
+        result, error = self.share((result, error))
+        if error is not None:
+            raise error
+        return result
 
     def stream(self, array):
         """On rank 0 yields the array of each rank in turn, one at a time (bounded memory); nothing elsewhere."""

@@ -4,6 +4,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+from parsim import __version__, variant
 from parsim.case import parse
 from parsim.case_file import read
 from parsim.errors import InputError
@@ -11,30 +12,53 @@ from parsim.output import checkpoint
 from parsim.output.reader import open as open_run
 
 
-def find(out, until=None, tell=print):
+def find(out, until=None, kernel=None):
     """(case, checkpoint) to go on with in the output folder `out`; `until` (s) replaces the end of the case.
 
-    No case: the run is done. No checkpoint: it was stopped before the first one and begins again. `tell` prints that,
-    and which checkpoints are broken. Raises InputError where there is nothing to go on with.
+    No case: the run is done. No checkpoint: it was stopped before the first one and begins again. `kernel`: variant in
+    place of that of the checkpoint. Prints what is done and what was left out. Raises InputError where there is nothing
+    to go on with, or not so.
     """
     run = open_run(out)
     folder = run.folder
     if run.info.get("status") == "done" and (until is None or until <= run.info["time"]):
-        tell(f"{folder}: the run is done, at t = {run.info['time']:g} s; --until prolongs it", flush=True)
+        print(f"{folder}: the run is done, at t = {run.info['time']:g} s; --until prolongs it", flush=True)
         return None, None
-    found, broken = checkpoint.newest(folder)
-    for line in broken:
-        tell(f"warning: {line}", file=sys.stderr, flush=True)
-    if broken and found is None:
-        raise InputError(f"OUT = {folder}: holds no whole checkpoint; start again with `parsim run CASE -o {folder} "
-                         "--force`")
+    found = _newest(folder)
     if found is not None:
         data = tomllib.loads(found.case)
+        _check(found, until, kernel)
     elif (folder / "case.toml").is_file():
-        tell(f"{folder}: holds no checkpoint, the run begins again", flush=True)
+        print(f"{folder}: holds no checkpoint, the run begins again", flush=True)
         data = read(Path(folder, "case.toml"))
     else:
         raise InputError(f"OUT = {folder}: holds neither a checkpoint nor a case to begin with")
     if until is not None:
         data["run"]["until"] = until
     return parse(data), found
+
+
+def _newest(folder):
+    found, broken = checkpoint.newest(folder)
+    _warn(broken)
+    if broken and found is None:
+        raise InputError(f"OUT = {folder}: holds no whole checkpoint; start again with `parsim run CASE -o {folder} "
+                         "--force`")
+    return found
+
+
+def _check(found, until, kernel):
+    """Refuse what cannot go on from a checkpoint, warn of what goes on with other last bits."""
+    time, wrote, used = (found.account[key] for key in ("time", "parsim", "kernel"))
+    if until is not None and until <= time:
+        raise InputError(f"--until = {until!r}: must be later than the checkpoint, which is at t = {time:g} s")
+    if kernel is None and used not in variant.possible():
+        raise InputError(f"{found.path}: computed with kernel variant {used}, which this processor does not have; with "
+                         f"--kernel the run goes on to other last bits; possible: {', '.join(variant.possible())}")
+    _warn([f"{found.path}: written by parsim {wrote}, this is {__version__}; last bits may differ"] * (
+        wrote != __version__))
+
+
+def _warn(lines):
+    for line in lines:
+        print(f"warning: {line}", file=sys.stderr, flush=True)

@@ -241,8 +241,8 @@ def _advance(case, folder, name, walltime, account=None, snapshot=None):
                     return STOPPED
             _step(simulation, recorder)
             recorder.watch(simulation)
-        recorder.finish(simulation)
         keeper.finish()
+        recorder.finish(simulation)
     return 0
 
 

@@ -10,6 +10,7 @@ import pytest
 from test_water import POOL, simulation
 
 import parsim
+from parsim import stop, variant
 from parsim.__main__ import main
 from parsim.comm import Comm
 from parsim.errors import InputError
@@ -175,3 +176,34 @@ def test_only_broken_checkpoints_are_refused(finished, tmp_path, capsys):
 def test_nothing_to_resume_is_refused(tmp_path):
     with pytest.raises(InputError, match="not an output folder"):
         find(tmp_path)
+
+
+def test_what_cannot_go_on_is_refused(finished, tmp_path, capsys, monkeypatch):
+    out = tmp_path / "out"
+    shutil.copytree(finished, out)
+    (out / "run.json").write_text(json.dumps({"status": "running"}))
+    assert main(["resume", str(out), "--until", "0.05"]) == 2
+    assert "--until = 0.05: must be later than the checkpoint" in capsys.readouterr().err
+    monkeypatch.setattr(variant, "possible", lambda: ["other"])
+    assert main(["resume", str(out)]) == 2
+    assert "which this processor does not have; with --kernel" in capsys.readouterr().err
+    assert main(["resume", str(out), "--walltime", "soon"]) == 2
+    assert "walltime = soon: must be minutes" in capsys.readouterr().err
+
+
+def test_info_tells_of_the_pieces(finished, capsys):
+    assert main(["info", str(finished)]) == 0
+    assert "from step 0 on 1 ranks: done" in capsys.readouterr().out
+
+
+def test_info_tells_of_a_killed_run(finished, tmp_path, capsys):
+    out = tmp_path / "out"
+    shutil.copytree(finished, out)
+    (out / "run.json").write_text(json.dumps({"status": "running"}))
+    assert main(["info", str(out)]) == 0
+    assert "`parsim resume` goes on" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("text", "seconds"), [("7", 420), ("0:90", 90), ("2:03:04", 7384), ("1-02:03:04", 93784)])
+def test_walltimes_are_read_as_schedulers_write_them(text, seconds):
+    assert stop.seconds(text) == seconds

@@ -37,17 +37,13 @@ class Folder:
             self.lock.release()
 
     def _together(self, work, *arguments):
-        refusal = None
-        if self.comm.rank == 0:
+        def told():
             try:
                 work(*arguments)
             except OSError as error:
-                refusal = WriteError(self.path, error.strerror or error)
-            except (InputError, WriteError) as error:
-                refusal = error
-        refusal = self.comm.share(refusal)
-        if refusal is not None:
-            raise refusal
+                raise WriteError(self.path, error.strerror or error) from None
+
+        self.comm.first(told)
 
     def _make(self, case, source, force):
         out = self.path

@@ -16,15 +16,11 @@ _SPEED = 50e6  # bytes/s at which the first checkpoint is expected to be written
 
 
 class Keeper:
-    """Asked by the solver before every step that rebuilds, on all ranks together; `finish` at the end of the run.
-
-    Attributes: written, number of checkpoints; seconds, spent on them; bytes, of the last one.
-    """
+    """Asked by the solver before every step that rebuilds, on all ranks together; `finish` at the end of the run."""
 
     def __init__(self, case, recorder, stop, simulation):
         self.case, self.recorder, self.stop, self.comm = case, recorder, stop, simulation.comm
-        self.folder = recorder.out / checkpoint.FOLDER
-        self.written, self.seconds, self.last = 0, 0.0, None
+        self.folder, self.timers, self.last = recorder.out / checkpoint.FOLDER, simulation.timers, None
         self.bytes = simulation.fluid_count * checkpoint.WATER_BYTES
         self._cost, self._pace = self.bytes / _SPEED, 0.0
         self._looked = self._saved = clock.perf_counter()
@@ -66,14 +62,15 @@ class Keeper:
         name = f"{'milestone' if milestone else 'checkpoint'}_{snapshot.account['step_count']:09d}{checkpoint.SUFFIX}"
         if milestone:
             self._milestone = self._next_milestone(snapshot.account["time"])
-        checkpoint.write(self.folder / name, self.case.to_toml(), snapshot, self.comm)
+        with self.timers("checkpoints"):
+            self.recorder.secure()
+            checkpoint.write(self.folder / name, self.case.to_toml(), snapshot, self.comm)
         if self.recorder.main:
             self.bytes = (self.folder / name).stat().st_size
             self._prune()
         self.last, self._saved = None, clock.perf_counter()
         self._cost = self._saved - begin
         self._looked = self._saved  # a checkpoint is no part of the pace of rebuilds
-        self.written, self.seconds = self.written + 1, self.seconds + self._cost
 
     def _prune(self):
         regular = [path for path in checkpoint.listed(self.folder.parent) if path.name.startswith("checkpoint")]

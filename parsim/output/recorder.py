@@ -98,18 +98,23 @@ class Recorder:
                                       ["-", "s", *[units] * (len(columns) - 2)], resume=step)
 
     def account(self, simulation):
-        """What a restart must know of the outputs; all that stands in them is on the disk then."""
+        """What a restart must know of the outputs as they are now."""
         if self.main:
             self._tell_gone(simulation)
-            for table in self.tables.values():
-                table.secure()
         frames = {kind: list(entries) for kind, entries in self.frames.items()}
         return {"frames": frames, "next_frame": self.next_frame, "next_row": self.next_row,
                 "particles": self.particles, "name": self.name, "kernel": variant.chosen(), "parsim": __version__}
 
+    def secure(self):
+        """See all rows on the disk: a checkpoint relies on them."""
+        if self.main:
+            for table in self.tables.values():
+                table.secure()
+
     def watch(self, simulation):
         """Look at the simulation after a step; write what is due."""
         if self.main:
+            self.folder.lock.beat()
             self.progress.step(simulation.step_count, simulation.time, simulation.dt, simulation.active)
         with simulation.timers("output"):
             if simulation.time >= self.next_row:
