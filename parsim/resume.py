@@ -4,7 +4,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-from parsim import __version__, variant
+from parsim import variant
 from parsim.case import parse
 from parsim.case_file import read
 from parsim.errors import InputError
@@ -49,14 +49,14 @@ def _newest(folder):
 
 def _check(found, until, kernel):
     """Refuse what cannot go on from a checkpoint, warn of what goes on with other last bits."""
-    time, wrote, used = (found.account[key] for key in ("time", "parsim", "kernel"))
+    time, wrote, used = (found.account[key] for key in ("time", "versions", "kernel"))
     if until is not None and until <= time:
         raise InputError(f"--until = {until!r}: must be later than the checkpoint, which is at t = {time:g} s")
     if kernel is None and used not in variant.possible():
         raise InputError(f"{found.path}: computed with kernel variant {used}, which this processor does not have; with "
                          f"--kernel the run goes on to other last bits; possible: {', '.join(variant.possible())}")
-    _warn([f"{found.path}: written by parsim {wrote}, this is {__version__}; last bits may differ"] * (
-        wrote != __version__))
+    _warn(f"{found.path}: written with {name} {wrote[name]}, this is {now}; last bits may differ"
+          for name, now in variant.versions().items() if wrote[name] != now)
 
 
 def _warn(lines):

@@ -8,13 +8,14 @@ here imports numba, which reads the settings that `apply` makes when it is impor
 import functools
 import hashlib
 import os
+import platform
 import sys
 import tempfile
 from difflib import get_close_matches
 from importlib.metadata import version
 from pathlib import Path
 
-from parsim import launch
+from parsim import __version__, launch
 from parsim.errors import InputError
 
 # features added to the host's; the gather instruction is slower than scalar loads on many hosts, by microcode, and
@@ -93,6 +94,12 @@ def code():
     """A short name of the machine code itself: variant, sources, processor, numba and Python."""
     parts = (source_hash(), *_host()[:1], os.environ[NAME], version("numba"), sys.version)
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
+
+
+def versions():
+    """Versions of all that the last bits of a result depend on, besides the variant."""
+    return {"parsim": __version__, "python": platform.python_version(), "processor": _host()[0],
+            **{name: version(name) for name in ("numpy", "numba")}}
 
 
 def source_hash():

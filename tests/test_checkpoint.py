@@ -184,9 +184,12 @@ def test_what_cannot_go_on_is_refused(finished, tmp_path, capsys, monkeypatch):
     (out / "run.json").write_text(json.dumps({"status": "running"}))
     assert main(["resume", str(out), "--until", "0.05"]) == 2
     assert "--until = 0.05: must be later than the checkpoint" in capsys.readouterr().err
+    monkeypatch.setattr(variant, "versions", lambda: {"numba": "0.1"})
     monkeypatch.setattr(variant, "possible", lambda: ["other"])
     assert main(["resume", str(out)]) == 2
     assert "which this processor does not have; with --kernel" in capsys.readouterr().err
+    find(out, 0.2, "other")
+    assert "this is 0.1; last bits may differ" in capsys.readouterr().err
     assert main(["resume", str(out), "--walltime", "soon"]) == 2
     assert "walltime = soon: must be minutes" in capsys.readouterr().err
 

@@ -102,8 +102,8 @@ class Recorder:
         if self.main:
             self._tell_gone(simulation)
         frames = {kind: list(entries) for kind, entries in self.frames.items()}
-        return {"frames": frames, "next_frame": self.next_frame, "next_row": self.next_row,
-                "particles": self.particles, "name": self.name, "kernel": variant.chosen(), "parsim": __version__}
+        return {"frames": frames, "next_frame": self.next_frame, "next_row": self.next_row, "name": self.name,
+                "particles": self.particles, "kernel": variant.chosen(), "versions": variant.versions()}
 
     def secure(self):
         """See all rows on the disk: a checkpoint relies on them."""
