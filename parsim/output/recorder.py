@@ -184,7 +184,10 @@ class Recorder:
 
     def stopped(self, simulation, reason):
         """End a run that has been stopped, with a checkpoint, before its end."""
-        self._close(f"stopped ({reason})", simulation, reason=reason, go_on=f"parsim resume {self.out}")
+        go_on = f"parsim resume {self.out}"
+        self._close(f"stopped ({reason})", simulation, reason=reason, go_on=go_on)
+        if self.main:
+            print(f"to go on: {go_on}", flush=True)
 
     def _close(self, words, simulation, **facts):
         wall = clock.perf_counter() - simulation.timers.start
