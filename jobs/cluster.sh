@@ -23,9 +23,11 @@ prepare() {
     export NUMBA_CACHE_DIR=${NUMBA_CACHE_DIR:-${TMPDIR:-/tmp}/parsim-cache-${USER:-$UID}}
 }
 
-# One stretch of the run on RANKS ranks, WALLTIME long at most if it is given; the exit code is that of parsim.
+# One stretch of the run on RANKS ranks, WALLTIME long at most if it is given; the exit code is that of parsim, and
+# `ended` is set where the scheduler ends the job: what then becomes of it is for the scheduler, or who cancelled it.
 attempt() {
     local words code=0
+    ended=
     if [[ -f $output/case.toml ]]; then
         words=(resume "$output")
     else
@@ -35,7 +37,8 @@ attempt() {
     say "parsim ${words[*]}"
     "$python" -P -m parsim "${words[@]}" &
     job=$!
-    trap 'kill -USR1 "$job" 2>/dev/null' USR1 TERM
+    trap 'kill -USR1 "$job" 2>/dev/null' USR1
+    trap 'ended=yes; kill -USR1 "$job" 2>/dev/null' TERM
     # a signal ends `wait` before the run has ended
     while :; do
         wait "$job" && code=0 || code=$?

@@ -20,7 +20,7 @@ left=$(squeue --noheader --job "$SLURM_JOB_ID" --format %L | head -n 1)
 prepare "$1" "${2:-runs/$(basename -- "$1" .toml)}" "${3:-}" "${SLURM_ARRAY_TASK_ID:-}"
 before=$(newest) code=0
 attempt "${SLURM_NTASKS:-1}" "$left" || code=$?
-if [[ $code -eq 75 ]]; then
+if [[ $code -eq 75 && -z $ended ]]; then
     [[ $(newest) != "$before" ]] || { say "no checkpoint within this walltime: ask for a longer one"; exit 1; }
     say "stopped with a checkpoint: back into the queue"
     scontrol requeue "$SLURM_JOB_ID"

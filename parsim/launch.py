@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 from parsim.errors import InputError
@@ -24,7 +25,9 @@ _LAUNCHERS = {
     "srun (Slurm)": ("SLURM_STEP_NUM_TASKS", "SLURM_PROCID"),
 }
 
+SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)  # that ask a run to stop
 _PR_SET_PDEATHSIG = 1
+_END = signal.SIGINT  # what ends mpirun at once
 _STARTING = 3.0  # s after which every rank listens to signals
 SAME_SIGNAL = 1.0  # s within which a second signal is the first one on another way
 _SUM = "from mpi4py import MPI; c = MPI.COMM_WORLD; print('sum', c.allreduce(c.rank + 1), 'of', c.size)"
@@ -166,15 +169,15 @@ def environment():
 def mpirun(ranks, arguments, stopped=False):
     """Run `arguments` (a list, the program first) as `ranks` processes and return the exit code of the job.
 
-    SIGUSR1, SIGTERM and SIGINT come to the ranks as SIGUSR1, for mpirun leaves them no time after the others; a second
-    SIGTERM or SIGINT ends the job at once. `stopped`: SIGUSR1 has come already. The job is ended too when this process
-    is killed.
+    Each of SIGNALS comes to the ranks as SIGUSR1, for mpirun leaves them no time after the others; a second one other
+    than SIGUSR1 ends the job at once. `stopped`: SIGUSR1 has come already. The job is ended too when this process is
+    killed.
     """
     heard, began = [], time.monotonic()
 
     def hand_on(number, _):
         if number != signal.SIGUSR1 and heard and time.monotonic() - heard[0] > SAME_SIGNAL:
-            process.terminate()
+            process.send_signal(_END)
             return
         heard.append(time.monotonic())
         # ranks that do not listen yet would die of it
@@ -182,21 +185,36 @@ def mpirun(ranks, arguments, stopped=False):
 
     # in a process group of its own, or a terminal would send SIGINT to mpirun as well
     process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL, process_group=0,
-                               preexec_fn=_die_with_parent)
-    before = {number: signal.signal(number, hand_on) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
-    try:
+                               preexec_fn=_as_child)
+    with heeding(hand_on):
         if stopped:
             hand_on(signal.SIGUSR1, None)
         code = process.wait()
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
     return code if code >= 0 else 128 - code
 
 
-def _die_with_parent():
-    """Ask Linux to send this process SIGTERM when its parent is gone."""
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+@contextmanager
+def heeding(handler):
+    """Have `handler` called for SIGNALS, but for those that this process was told to ignore, as by nohup."""
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    heeded = {number: handled for number, handled in before.items() if handled != signal.SIG_IGN}
+    for number in heeded:
+        signal.signal(number, handler)
+    try:
+        yield
+    finally:
+        for number, handled in heeded.items():
+            signal.signal(number, handled)
+
+
+def _as_child():
+    """In mpirun, before it starts: end with the parent, and do not hear SIGTERM.
+
+    A scheduler sends that to all processes of a job at once, and mpirun would kill the ranks half a second after it.
+    """
+    signal.signal(_END, signal.SIG_DFL)  # shells let programs in the background ignore it
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, _END)
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
 
 
 def fault(ranks=2, timeout=60):

@@ -2,7 +2,6 @@
 
 import sys
 import tomllib
-from pathlib import Path
 
 from parsim import variant
 from parsim.case import parse
@@ -18,6 +17,8 @@ def find(out, until=None, kernel=None):
     No case: the run is done. No checkpoint: it was stopped before the first one and begins again. `kernel`: variant in
     place of that of the checkpoint. Prints what is done and what was left out. Raises InputError where there is nothing
     to go on with, or not so.
+
+    The case is that of the checkpoint, but for its end, which is the one that `--until` has last put into case.toml.
     """
     run = open_run(out)
     folder = run.folder
@@ -25,17 +26,42 @@ def find(out, until=None, kernel=None):
         print(f"{folder}: the run is done, at t = {run.info['time']:g} s; --until prolongs it", flush=True)
         return None, None
     found = _newest(folder)
+    noted = folder / "case.toml"
     if found is not None:
         data = tomllib.loads(found.case)
         _check(found, until, kernel)
-    elif (folder / "case.toml").is_file():
+        if noted.is_file():
+            data["run"]["until"] = _end_of(noted, data)
+    elif noted.is_file():
         print(f"{folder}: holds no checkpoint, the run begins again", flush=True)
-        data = read(Path(folder, "case.toml"))
+        data = read(noted)
     else:
         raise InputError(f"OUT = {folder}: holds neither a checkpoint nor a case to begin with")
     if until is not None:
         data["run"]["until"] = until
     return parse(data), found
+
+
+def _end_of(path, data):
+    """run.until of the case file at `path`, else of the case `data`; what else differs is told, and not followed."""
+    try:
+        noted = _flat(read(path))
+    except InputError as error:
+        _warn(f"{message}; the case of the checkpoint holds" for message in error.messages)
+        return data["run"]["until"]
+    kept = _flat(data)
+    changed = [key for key in kept | noted if key != "run.until" and kept.get(key) != noted.get(key)]
+    if changed:
+        _warn([f"{path}: {', '.join(changed)}: not as in the checkpoint, which holds; a changed case is another run"])
+    return noted.get("run.until", data["run"]["until"])
+
+
+def _flat(data, path=""):
+    """Values of nested tables by key.path."""
+    flat = {}
+    for key, value in data.items():
+        flat |= _flat(value, f"{path}{key}.") if isinstance(value, dict) else {path + key: value}
+    return flat
 
 
 def _newest(folder):

@@ -8,9 +8,8 @@ from pathlib import Path
 from parsim import launch
 from parsim.errors import InputError
 
-SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)
 STOPPED = 75  # exit code: a checkpoint is written, submit again
-REASONS = ("", "walltime", *(number.name for number in SIGNALS))  # by number, so that ranks can agree on the largest
+REASONS = ("", "walltime", *(number.name for number in launch.SIGNALS))  # numbered: ranks agree on the largest
 _UNITS = (1.0, 60.0, 3600.0, 86400.0)
 
 
@@ -18,8 +17,9 @@ _early = []  # signals that came before anything could be done about them
 
 
 def listen():
-    """Note SIGUSR1 from now on, which would end a process that does not yet listen to it."""
+    """Note SIGUSR1 from now on, which would end a process that does not yet listen to it; hear SIGTERM (`launch`)."""
     signal.signal(signal.SIGUSR1, lambda number, _: _early.append(number))
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
 
 
 def early():
@@ -28,7 +28,7 @@ def early():
 
 
 class Stop:
-    """Listens from when it is made; as a context manager it gives the signals back at the end.
+    """Listens while it is used as a context manager.
 
     A second signal ends the process at once, but for SIGUSR1. `walltime`, s, is that of the whole job, counted from the
     start of this process.
@@ -37,14 +37,14 @@ class Stop:
     def __init__(self, walltime=None):
         self.walltime = walltime
         self._first, self._number = (time.monotonic(), _early[0]) if _early else (None, None)
-        self._before = {number: signal.signal(number, self._hear) for number in SIGNALS}
+        self._heeding = launch.heeding(self._hear)
 
     def __enter__(self):
+        self._heeding.__enter__()
         return self
 
-    def __exit__(self, *_):
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
+    def __exit__(self, *told):
+        self._heeding.__exit__(*told)
 
     def reason(self, margin):
         """Number in REASONS of why this process should stop, 0 to go on; `margin`, s, is what stopping takes."""

@@ -8,6 +8,7 @@ from parsim.errors import InputError, WriteError
 from parsim.estimate import estimate
 from parsim.output import checkpoint, lock
 from parsim.output.frames import write_text
+from parsim.output.reader import MARKS
 
 _WATER_BYTES, _BODY_BYTES = 90, 2000  # in a frame: of a particle, of a body
 _ROW_BYTES, _BODY_ROW_BYTES = 600, 900  # of all series, and of each body in them
@@ -53,9 +54,9 @@ class Folder:
         if full and not force:
             raise InputError(f"OUT = {out}: already there and not empty; choose another folder, go on in it with "
                              "`parsim resume`, or add --force to replace it")
-        if full and not (out / "run.json").exists():
-            raise InputError(f"OUT = {out}: --force replaces only an earlier output of parsim (there is no run.json in "
-                             "this folder)")
+        if full and not any((out / mark).exists() for mark in MARKS):
+            raise InputError(f"OUT = {out}: --force replaces only an earlier output of parsim (there is neither "
+                             f"{' nor '.join(MARKS)} in this folder)")
         _check_room(case, out)
         out.mkdir(parents=True, exist_ok=True)
         self.lock.take()
@@ -69,22 +70,21 @@ class Folder:
         self.lock.take()
         if account is None:
             self._empty(keep={"reference.csv"})
-        else:
-            frames = {name for entries in account["frames"].values() for name, _ in entries}
-            for path in (self.path / "frames").iterdir():
-                if f"frames/{path.name}" not in frames:
-                    path.unlink()
-            for path in checkpoint.listed(self.path):
-                if checkpoint.step_of(path) > account["step_count"]:
-                    path.unlink()
-            for part in self.path.rglob(".*.part"):
-                part.unlink()
         self._furnish(case)
+        for path in self._newer(account) if account else ():
+            path.unlink()
+
+    def _newer(self, account):
+        """What was written after a checkpoint, or not to its end."""
+        frames = {name for entries in account["frames"].values() for name, _ in entries}
+        yield from [path for path in (self.path / "frames").iterdir() if f"frames/{path.name}" not in frames]
+        yield from [path for path in checkpoint.listed(self.path) if checkpoint.step_of(path) > account["step_count"]]
+        yield from [path for path in self.path.rglob(".*.part")]
 
     def _furnish(self, case):
+        write_text(self.path / "case.toml", case.to_toml())  # first: it makes the folder one to go on with
         for name in ("series", "frames", checkpoint.FOLDER):
             (self.path / name).mkdir(exist_ok=True)
-        write_text(self.path / "case.toml", case.to_toml())
 
     def _empty(self, keep=()):
         for path in self.path.iterdir():

@@ -8,11 +8,12 @@ import time
 from datetime import UTC, datetime
 from pathlib import Path
 
-from parsim.errors import InputError, WriteError
+from parsim.errors import InputError, RunError, WriteError
 
 NAME = "lock"
 STALE = 300.0  # s without a sign of life after which the lock of another machine is void
 BEAT = 30.0  # s between signs of life, at most
+LOOK = 2.0  # s between looks for one
 
 
 class Lock:
@@ -20,39 +21,64 @@ class Lock:
 
     The operating system frees the lock of a process that has ended. A file system may not tell the machines of a
     cluster from each other's locks; hence a job also gives signs of life, by the date of the file, and a lock that
-    another machine has left is void only when it has given none for STALE seconds.
+    another machine has left is void only when it has given none for STALE seconds. Who finds one waits that long for a
+    sign: a job that goes on where a lost machine has left off must not fail for being quick.
     """
 
     def __init__(self, folder):
         self.path = Path(folder, NAME)
-        self._file, self._beaten = None, 0.0
+        self._file, self._text, self._beaten = None, "", 0.0
 
     def take(self):
-        """Take the lock. Raises InputError, which says who has it, or WriteError."""
+        """Take the lock, once that of another machine has shown whether it lives.
+
+        Raises InputError, which says who has it, or WriteError.
+        """
+        seen = None
         while self._file is None:
             try:
                 file = open(self.path, "a+", encoding="utf-8")
             except OSError as error:
                 raise WriteError(self.path, error.strerror or error) from None
-            if not _locked(file) or self._alive(file):
-                text = _holder(file)
-                file.close()
-                raise InputError(f"OUT = {self.path.parent}: another job writes it ({text}); wait for its end. If it "
-                                 f"is dead for certain, remove {self.path}")
-            if _is_at(file, self.path):  # else its holder removed it just now
+            sign = _sign_of_life(file) if _locked(file) else 0.0
+            if sign is None and _is_at(file, self.path):  # else its holder removed it just now
                 self._file = file
+            elif sign is not None:
+                holder = _holder(file)
+                file.close()
+                if sign == 0.0 or seen not in (None, sign):
+                    raise InputError(f"OUT = {self.path.parent}: another job writes it ({holder}); wait for its end. "
+                                     f"If it is dead for certain, remove {self.path}")
+                if seen is None:
+                    print(f"{self.path.parent}: locked by another job ({holder}); waiting up to {STALE:g} s for a sign "
+                          "of life", flush=True)
+                seen = sign
+                time.sleep(LOOK)
+        self._text = json.dumps({"host": platform.node(), "process": os.getpid(),
+                                 "job": os.environ.get("SLURM_JOB_ID") or os.environ.get("PBS_JOBID"),
+                                 "since": datetime.now(UTC).isoformat(timespec="microseconds")})
         self._file.truncate(0)
-        self._file.write(json.dumps({"host": platform.node(), "process": os.getpid(),
-                                     "job": os.environ.get("SLURM_JOB_ID") or os.environ.get("PBS_JOBID"),
-                                     "since": datetime.now(UTC).isoformat(timespec="seconds")}))
+        self._file.write(self._text)
         self._file.flush()
 
+    @property
+    def mine(self):
+        """Whether this process has the lock."""
+        return self._file is not None
+
     def beat(self):
-        """Give a sign of life, now and then."""
+        """Give a sign of life, now and then. Raises RunError where another job has taken this one for dead."""
         now = time.monotonic()
-        if self._file and now - self._beaten > BEAT:
-            self._beaten = now
-            os.utime(self._file.fileno())
+        if not self._file or now - self._beaten < BEAT:
+            return
+        self._beaten = now
+        self._file.seek(0)
+        if self._file.read() != self._text or not _is_at(self._file, self.path):
+            self._file.close()
+            self._file = None
+            raise RunError(f"another job has taken {self.path.parent} after {STALE:g} s without a sign of life of this "
+                           "one, which ends")
+        os.utime(self._file.fileno())
 
     def release(self):
         """Give the folder free."""
@@ -61,22 +87,13 @@ class Lock:
             self._file.close()
             self._file = None
 
-    def _alive(self, file):
-        """Whether a job on another machine has given a sign of life lately."""
-        file.seek(0)
-        try:
-            host = json.loads(file.read())["host"]
-        except (ValueError, KeyError, TypeError):
-            return False
-        return host != platform.node() and time.time() - os.fstat(file.fileno()).st_mtime < STALE
-
 
 def held(folder):
     """Whether a job writes this folder now, as far as can be seen from here."""
     path = Path(folder, NAME)
     try:
         with open(path, "r+", encoding="utf-8") as file:
-            return not _locked(file) or Lock(folder)._alive(file)
+            return not _locked(file) or _sign_of_life(file) is not None
     except OSError:
         return path.exists()
 
@@ -90,6 +107,17 @@ def _locked(file):
     except OSError:
         return True
     return True
+
+
+def _sign_of_life(file):
+    """When a job on another machine that may still live has given its last one, s; None where there is none such."""
+    file.seek(0)
+    try:
+        host = json.loads(file.read())["host"]
+    except (ValueError, KeyError, TypeError):
+        return None
+    beaten = os.fstat(file.fileno()).st_mtime
+    return beaten if host != platform.node() and time.time() - beaten < STALE else None
 
 
 def _is_at(file, path):

@@ -3,6 +3,7 @@
 The cursor is never hidden and no thread draws, so there is nothing to put right when a rank dies.
 """
 
+import os
 import sys
 import time as clock
 from collections import deque
@@ -18,6 +19,32 @@ FIRST, LONGEST = 2.0, 60.0  # s between lines in a log: 2, 4, 8, ... 60
 REFRESH = 0.2  # s between renewals on a terminal
 BAR = 24  # columns
 _RENEW = Control((ControlType.CARRIAGE_RETURN,), (ControlType.ERASE_IN_LINE, 2))
+
+
+class _Outlet:
+    """Standard output for a run, which does not end because nobody can read it: a closed terminal, a full disk."""
+
+    def __init__(self, stream):
+        self._stream = stream
+
+    def __getattr__(self, name):
+        return getattr(self._stream, name)
+
+    def write(self, text):
+        """Write what can be written."""
+        self._tried(self._stream.write, text)
+
+    def flush(self):
+        """Likewise."""
+        self._tried(self._stream.flush)
+
+    def _tried(self, act, *given):
+        try:
+            act(*given)
+        except OSError:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._stream.fileno())  # what waits in the stream goes there as well
+            os.close(nowhere)
 
 
 class Progress:
@@ -37,7 +64,7 @@ class Progress:
         self.closed = False
         # rates: over some ten seconds on a terminal, since the line before in a log
         self.samples = deque([(self.began, start, 0)], maxlen=50 if self.on_terminal else 2)
-        self.console = Console(file=sys.stdout, force_terminal=self.on_terminal, highlight=False)
+        self.console = Console(file=_Outlet(sys.stdout), force_terminal=self.on_terminal, highlight=False)
 
     def step(self, step: int, time: float, dt: float, active: int):
         """Count one step of `active` particles that ended at `time` (simulated s); print when something is due."""
@@ -67,7 +94,7 @@ class Progress:
         if self.on_terminal:
             self.console.control(_RENEW)
         rate = quantity(self.work / wall)
-        self._print(f"{status}: t = {time:.4g} s, {step} steps in {duration(wall)}, {rate} particle-steps/s")
+        self.say(f"{status}: t = {time:.4g} s, {step} steps in {duration(wall)}, {rate} particle-steps/s")
 
     def __enter__(self):
         return self
@@ -75,7 +102,8 @@ class Progress:
     def __exit__(self, kind, error, traceback):
         self.close("failed" if error else "ended")
 
-    def _print(self, line):
+    def say(self, line: str):
+        """Print one line."""
         self.console.print(line, soft_wrap=True)
         self.console.file.flush()
 
@@ -95,7 +123,7 @@ class Progress:
 
     def _show(self):
         if not self.on_terminal:
-            self._print("  ".join(self._facts()))
+            self.say("  ".join(self._facts()))
             return
         share = (self.last[1] - self.start) / (self.until - self.start)
         # on a narrow terminal the last facts are left out

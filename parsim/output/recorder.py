@@ -65,8 +65,9 @@ class Recorder:
         if kind is not None and self.main:
             if getattr(self, "progress", None):
                 self.progress.close("failed")
-            with suppress(WriteError):  # of a full disk the error in flight tells already
-                self._end("failed", error=f"{kind.__name__}: {error}")
+            if self.folder.lock.mine:
+                with suppress(WriteError):  # of a full disk the error in flight tells already
+                    self._end("failed", error=f"{kind.__name__}: {error}")
         self.folder.release()
 
     def begin(self, simulation):
@@ -187,7 +188,7 @@ class Recorder:
         go_on = f"parsim resume {self.out}"
         self._close(f"stopped ({reason})", simulation, reason=reason, go_on=go_on)
         if self.main:
-            print(f"to go on: {go_on}", flush=True)
+            self.progress.say(f"to go on: {go_on}")
 
     def _close(self, words, simulation, **facts):
         wall = clock.perf_counter() - simulation.timers.start
