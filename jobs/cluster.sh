@@ -1,4 +1,5 @@
-# What the job scripts of all schedulers share. Sourced:   source jobs/cluster.sh; prepare CASE OUT TABLE ROW; attempt RANKS WALLTIME
+# What the job scripts of all schedulers share. Sourced:
+#   source jobs/cluster.sh; prepare CASE OUT TABLE ROW; attempt RANKS WALLTIME; again CODE
 # shellcheck shell=bash
 # shellcheck source=SCRIPTDIR/setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
@@ -6,28 +7,25 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 # Checks what the job was given; `options` become the words that `parsim run` gets.
 prepare() {
     case_file=$1 output=$2 options=()
-    local table=$3 row=$4 keys values
+    local table=$3 row=$4
     [[ -x $python ]] || { say "no $venv: run \`bash jobs/local.sh\` once where the network is"; exit 2; }
-    [[ -f $case_file ]] || { say "no case file '$case_file'"; exit 2; }
     if [[ -n $table ]]; then
-        [[ -f $table ]] || { say "no table '$table'"; exit 2; }
         [[ $row =~ ^[1-9][0-9]*$ ]] || { say "a table needs an array job: --array=1-N, or -J 1-N"; exit 2; }
-        IFS=, read -r -a keys <"$table"
-        IFS=, read -r -a values < <(sed -n "$((row + 1))p" -- "$table") || true
-        [[ ${#values[@]} -eq ${#keys[@]} ]] || {
-            say "row $row of $table has ${#values[@]} values for ${#keys[@]} keys"; exit 2; }
-        for k in "${!keys[@]}"; do options+=(--set "${keys[k]}=${values[k]}"); done
+        options+=(--table "$table" --row "$row")
         output=$output-$row
     fi
     # compiled kernels on the node's own disk, made once there
     export NUMBA_CACHE_DIR=${NUMBA_CACHE_DIR:-${TMPDIR:-/tmp}/parsim-cache-${USER:-$UID}}
+    # mpirun's daemons on the other nodes would not outlive the SIGTERM that a scheduler sends to all processes of a job
+    if env --block-signal=TERM true 2>/dev/null; then
+        export PRTE_MCA_prte_launch_agent=${PRTE_MCA_prte_launch_agent:-env --block-signal=TERM prted}
+    fi
 }
 
-# One stretch of the run on RANKS ranks, WALLTIME long at most if it is given; the exit code is that of parsim, and
-# `ended` is set where the scheduler ends the job: what then becomes of it is for the scheduler, or who cancelled it.
+# One stretch of the run on RANKS ranks, WALLTIME long at most if it is given; the exit code is that of parsim.
 attempt() {
     local words code=0
-    ended=
+    before=$(newest) ended=
     if [[ -f $output/case.toml ]]; then
         words=(resume "$output")
     else
@@ -45,6 +43,20 @@ attempt() {
         kill -0 "$job" 2>/dev/null || break
     done
     return "$code"
+}
+
+# Whether a run that has ended with CODE is to be put back into the queue: it was stopped, or killed by no fault of its
+# own, and has come further. A job that the scheduler ends is left to the scheduler, and to who cancelled it.
+again() {
+    [[ -z $ended ]] || return 1
+    if [[ $1 -eq 75 ]]; then
+        say "stopped with a checkpoint"
+    elif grep -q '"status": "running"' "$output/run.json" 2>/dev/null; then
+        say "killed, or lost with a node"
+    else
+        return 1
+    fi
+    [[ $(newest) != "$before" ]] || { say "no new checkpoint in this stretch, so this is its end"; return 1; }
 }
 
 # What the newest checkpoint is; the same before and after a stretch when that brought nothing.

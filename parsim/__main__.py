@@ -29,6 +29,8 @@ Threads = Annotated[int | None, typer.Option(min=1, metavar="N", help="threads o
 Ranks = Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")]
 Walltime = Annotated[str | None, typer.Option(
     metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over")]
+TableFile = Annotated[Path | None, typer.Option(
+    "--table", metavar="TABLE", help="CSV: the first line names keys of the case, each further line is a run")]
 Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
 
 
@@ -52,10 +54,13 @@ def command(function):
     return function
 
 
-def _load(case, changes, until=None):
-    from parsim.case import load
+def _row(table, row):
+    """The changes that a row of a table makes."""
+    from parsim.case_table import row as row_of
 
-    return load(case, [*(changes or ()), *([] if until is None else [f"run.until={until!r}"])])
+    if (table is None) != (row is None):
+        raise InputError("--table TABLE and --row N belong together")
+    return row_of(table, row) if table else []
 
 
 @command
@@ -64,6 +69,8 @@ def run(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="output folder, made by the run")],
     until: Until = None,
     changes: Changes = None,
+    table: TableFile = None,
+    row: Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")] = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite an output folder")] = False,
     threads: Threads = None,
     ranks: Ranks = None,
@@ -71,9 +78,12 @@ def run(
     walltime: Walltime = None,
 ):
     """Run a case. Under mpirun or srun every rank runs this command."""
-    loaded, limit = _load(case, changes, until), _settings(threads, kernel, walltime)
+    from parsim.check import load
+
+    changes = [*(changes or ()), *_row(table, row)]
+    loaded, limit = load(case, changes, until), _settings(threads, kernel, walltime)
     if ranks:
-        words = ["run", case, "-o", out, *(word for change in changes or () for word in ("--set", change))]
+        words = ["run", case, "-o", out, *(word for change in changes for word in ("--set", change))]
         return _launched(ranks, words + ["--force"] * force, until, kernel, limit)
     from parsim.warm import prepare
 
@@ -143,40 +153,20 @@ def check(
     changes: Changes = None,
     until: Until = None,
     ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")] = 1,
+    table: TableFile = None,
 ):
-    """Check a case and estimate its size, memory and time, without running it."""
-    from parsim.estimate import lines
+    """Check a case, or all runs of a table, and estimate size, memory and time, without running anything."""
+    from parsim.check import main as checked
 
-    loaded = _load(case, changes, until)
-    print(f"{case}: a valid case", *lines(loaded, ranks), sep="\n")
-    for warning in loaded.warnings():
-        print(f"warning: {warning}")
+    checked(case, changes, until, ranks, table)
 
 
 @command
 def info(out: Folder):
     """Say what an output folder holds."""
-    from parsim.output.lock import held
-    from parsim.output.reader import open as open_run
+    from parsim.output.about import main as told
 
-    found = open_run(out)
-    told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}
-    if told.get("status") == "running" and not held(out):
-        told["status"] = "killed, or lost with its machine; `parsim resume` goes on"
-    told["pieces"] = "; ".join(f"from step {piece['from_step']} on {piece['ranks']} ranks: {piece.get('ended', '')}"
-                               for piece in found.info.get("pieces", ()))
-    told |= {key: _flat(value) for key, value in found.info.items()
-             if value and key != "pieces" and isinstance(value, dict | list)}
-    frames = found.times("water")
-    told["frames"] = f"{len(frames)}, {frames[0]:g} to {frames[-1]:g} s" if len(frames) else "none"
-    told["series"] = ", ".join(found.series_names) or "none"
-    print(found.case.get("title") or out)
-    print(*(f"  {key:<10} {value}" for key, value in told.items()), sep="\n")
-
-
-def _flat(value):
-    """A table or list on one line."""
-    return "; ".join(f"{key} {value[key]}" for key in value) if isinstance(value, dict) else "; ".join(map(str, value))
+    told(out)
 
 
 @command

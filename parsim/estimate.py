@@ -54,18 +54,28 @@ def time_step(case):
 def lines(case, ranks):
     """The estimate in words, for `ranks` ranks of one core each."""
     cost = estimate(case)
-    hours = cost.active * cost.steps / (RATE * ranks) / 3600
     each, all_of_them = (f"on each of {ranks} ranks", f"on {ranks} ranks") if ranks > 1 else ("on one rank",) * 2
     return [
         f"particles  about {cost.water:,} water, {cost.wall:,} wall, {cost.body:,} body, {cost.gate:,} gate; "
         f"{cost.active:,} active",
         f"steps      {cost.steps:,} of {time_step(case):.3g} s, from {case.start:g} to {case.run.until:g} s",
-        f"memory     {(cost.bytes / ranks + RANK_BYTES) / 1e9:.1f} GB {each}",
-        f"time       {_duration(hours)} {all_of_them}, if a core makes {RATE:,} active particle-steps per second",
+        f"memory     {_memory(cost, ranks)} {each}",
+        f"time       {_duration(cost, ranks)} {all_of_them}, if a core makes {RATE:,} active particle-steps per second",
     ]
 
 
-def _duration(hours):
+def brief(case, ranks):
+    """The estimate for one of `ranks` ranks, on one line."""
+    cost = estimate(case)
+    return f"{cost.active:,} active particles, {cost.steps:,} steps, {_memory(cost, ranks)}, {_duration(cost, ranks)}"
+
+
+def _memory(cost, ranks):
+    return f"{(cost.bytes / ranks + RANK_BYTES) / 1e9:.1f} GB"
+
+
+def _duration(cost, ranks):
+    hours = cost.active * cost.steps / (RATE * ranks) / 3600
     return f"{hours:.1f} hours" if hours >= 1 else f"{max(1, round(60 * hours))} minutes"
 
 

@@ -6,6 +6,7 @@ MPI itself is loaded only in child processes, so that looking never starts it he
 import ctypes
 import functools
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -26,6 +27,8 @@ _LAUNCHERS = {
 }
 
 SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)  # that ask a run to stop
+_RAW = ("--output", ":raw")  # of mpirun: show what is no whole line yet
+_HANDED_ON = ("NUMBA_", "OMP_NUM_THREADS", "PARSIM_")
 _PR_SET_PDEATHSIG = 1
 _END = signal.SIGINT  # what ends mpirun at once
 _STARTING = 3.0  # s after which every rank listens to signals
@@ -93,13 +96,15 @@ def terminal():
     """Columns of the terminal this process writes to, 0 when it writes to a file or a pipe.
 
     Open MPI gives every rank a terminal of its own as standard output, whatever mpirun itself writes to:
-    then the parent, mpirun, is asked.
+    then the parent, mpirun, is asked. Since version 5 it passes on whole lines only, unless told not to.
     """
     if not sys.stdout.isatty():
         return 0
     if "OMPI_COMM_WORLD_SIZE" not in os.environ:
         return os.get_terminal_size(sys.stdout.fileno()).columns or 80
     try:
+        if "PRTE_LAUNCHED" in os.environ and _RAW[1].encode() not in Path(f"/proc/{os.getppid()}/cmdline").read_bytes():
+            return 0
         # to append: another mode would empty the file that mpirun writes to
         with open(f"/proc/{os.getppid()}/fd/1", "ab", buffering=0) as stream:
             return (os.get_terminal_size(stream.fileno()).columns or 80) if stream.isatty() else 0
@@ -141,20 +146,26 @@ def launcher():
 
 
 @functools.cache
-def _is_open_mpi(program):
+def _open_mpi(program):
+    """Main version of Open MPI, 0 for another MPI."""
     version = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=60).stdout
-    return "Open MPI" in version or "OpenRTE" in version
+    found = re.search(r"(?:Open MPI|OpenRTE)\D*(\d+)", version)
+    return int(found[1]) if found else 0
 
 
 def command(ranks, arguments):
     """The full command line that starts `arguments` (a list, the program first) as `ranks` processes."""
     program = launcher()
-    options = []
-    if _is_open_mpi(program):
+    options, version = [], _open_mpi(program)
+    if version:
         # bound ranks of two jobs on one machine would share the same first cores and leave the others idle
         options += ["--bind-to", "none"]
         if ranks > cores():
             options += ["--oversubscribe"]
+        # ranks on other machines get these from mpirun alone, unless the scheduler hands them on
+        options += [word for name in sorted(os.environ) if name.startswith(_HANDED_ON) for word in ("-x", name)]
+    if version >= 5 and terminal():
+        options += _RAW
     return [program, *options, "-n", str(ranks), *map(str, arguments)]
 
 

@@ -35,6 +35,9 @@ class Watch:
 
     def __enter__(self):
         self._ring = self._comm.ring()
+        if self._comm.size > 1 and not self._ring and self._comm.rank == 0:
+            print("warning: this MPI library bears one thread only: a rank that hangs will not be noticed",
+                  file=sys.stderr, flush=True)
         self._thread.start()
         return self
 

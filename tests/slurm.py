@@ -1,4 +1,4 @@
-"""A Slurm of one node on the loopback address, for tests: munged, slurmctld and slurmd in a folder of their own."""
+"""A Slurm of two nodes on the loopback address, for tests: munged, slurmctld and slurmds in a folder of their own."""
 
 import os
 import shutil
@@ -8,23 +8,23 @@ import subprocess
 import time
 from pathlib import Path
 
+NODES = ("one", "two")  # what this machine pretends to be
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
 _PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
 _CONFIG = """
 ClusterName=parsim
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={ports[0]}
-SlurmdPort={ports[1]}
 SlurmUser=root
 AuthType=auth/munge
 AuthInfo=socket={folder}/munge.socket,cred_expire=5
 CryptoType=crypto/munge
 StateSaveLocation={folder}/state
-SlurmdSpoolDir={folder}/spool
+SlurmdSpoolDir={folder}/spool-%n
 SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
+SlurmdPidFile={folder}/slurmd-%n.pid
 SlurmctldLogFile={folder}/slurmctld.log
-SlurmdLogFile={folder}/slurmd.log
+SlurmdLogFile={folder}/slurmd-%n.log
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SelectType=select/cons_tres
@@ -37,8 +37,9 @@ JobRequeue=1
 KillWait=5
 MinJobAge=300
 SchedulerParameters=sched_interval=1,sched_min_interval=0,batch_sched_delay=0
-NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} State=UNKNOWN
-PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP OverSubscribe=FORCE:4
+NodeName={nodes[0]} NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[1]} CPUs={cores} State=UNKNOWN
+NodeName={nodes[1]} NodeHostname={host} NodeAddr=127.0.0.1 Port={ports[2]} CPUs={cores} State=UNKNOWN
+PartitionName=all Nodes={nodes[0]},{nodes[1]} Default=YES MaxTime=INFINITE State=UP OverSubscribe=FORCE:4
 """
 
 
@@ -57,9 +58,9 @@ class Slurm:
         self.folder, self._daemons = Path(folder), []
         host = socket.gethostname().split(".")[0]
         (self.folder / "state").mkdir()
-        (self.folder / "spool").mkdir()
         config = self.folder / "slurm.conf"
-        config.write_text(_CONFIG.format(host=host, folder=self.folder, ports=_free_ports(2), cores=os.cpu_count()))
+        config.write_text(_CONFIG.format(host=host, nodes=NODES, folder=self.folder, ports=_free_ports(3),
+                                         cores=os.cpu_count()))
         self.environment = {**os.environ, "PATH": _PATH, "SLURM_CONF": str(config)}
         key = self.folder / "munge.key"
         key.write_bytes(os.urandom(128))
@@ -69,8 +70,10 @@ class Slurm:
         self._start(["munged", "--foreground", "--force", f"--socket={self.folder}/munge.socket", *place])
         self._wait(lambda: (self.folder / "munge.socket").exists(), 10)
         self._start(["slurmctld", "-D"])
-        self._start(["slurmd", "-D"])
-        self._wait(lambda: "idle" in self.run("sinfo", "--noheader", "--format", "%t"), 30)
+        for node in NODES:
+            (self.folder / f"spool-{node}").mkdir()
+            self._boot(node)
+        self._wait(lambda: self.run("sinfo", "--noheader", "--format", "%t %D").strip() == "idle 2", 30)
 
     def run(self, *words):
         """What a command of Slurm prints."""
@@ -81,6 +84,23 @@ class Slurm:
         """State of a job, and how often it was started again."""
         fields = dict(word.partition("=")[::2] for word in self.run("scontrol", "show", "job", job).split())
         return fields.get("JobState", "gone"), int(fields.get("Restarts", 0)), fields.get("ExitCode", "")
+
+    def lose(self, node):
+        """Kill everything on a node, which then comes back empty."""
+        marks = (f"SLURMD_NODENAME={node}\0", f"slurmd\0-D\0-N\0{node}\0")
+        for place in Path("/proc").glob("[0-9]*"):
+            try:
+                text = "".join((place / name).read_text(errors="replace") + "\0" for name in ("cmdline", "environ"))
+                if any(mark in text for mark in marks):
+                    os.kill(int(place.name), signal.SIGKILL)
+            except OSError:
+                continue
+        daemon = self._daemons.pop()
+        daemon.wait()
+        self._boot(node)
+
+    def _boot(self, node):
+        self._start(["slurmd", "-D", "-N", node])
 
     def close(self):
         """End jobs and daemons."""
@@ -95,7 +115,7 @@ class Slurm:
                 daemon.wait()
 
     def _start(self, words):
-        log = open(self.folder / f"{words[0]}.out", "w")
+        log = open(self.folder / f"{words[0]}-{len(self._daemons)}.out", "w")
         self._daemons.append(subprocess.Popen(words, env=self.environment, stdout=log, stderr=log,
                                               stdin=subprocess.DEVNULL))
 

@@ -1,10 +1,12 @@
 """Runs that are stopped, killed, hung or filled up go on where they were, and leave nothing behind."""
 
+import fcntl
 import os
+import pty
 import shutil
 import subprocess
 import sys
-import threading
+import termios
 import time
 
 import pytest
@@ -170,6 +172,24 @@ def test_a_killed_parsim_takes_its_ranks_along(tmp_path, started):
     assert job.end() == -jobs.KILL and gone(job)
 
 
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_closed_terminal_stops_the_run_in_good_order(tmp_path, ranks):
+    out, (ours, theirs) = tmp_path / "out", pty.openpty()
+    line = [sys.executable, "-m", "parsim", "run", CASE, "-o", out, "-n", str(ranks)]
+    job = subprocess.Popen(line, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
+                           preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY))
+    os.close(theirs)
+    try:
+        begin = time.monotonic()
+        while time_of(out) < 0.05:
+            assert time.monotonic() - begin < jobs.PATIENCE and os.read(ours, 10_000)
+        os.close(ours)
+        assert job.wait(jobs.PATIENCE) == 75
+    finally:
+        job.kill()
+    assert status(out) == "stopped" and checkpoint.newest(out)[0].account["time"] > 0.05
+
+
 def test_a_second_signal_ends_at_once(disturbed):
     job, out = disturbed("sleeps", 0, "--set", "run.patience=1000.0")
     job.until(lambda: time_of(out) >= 0.0)
@@ -186,56 +206,6 @@ def test_two_jobs_never_write_one_folder(tmp_path, started, capsys):
     assert main(["run", str(CASE), "-o", str(out), "--force"]) == 2
     send(job, jobs.USR1)
     assert job.end() == 75
-
-
-@pytest.fixture
-def elsewhere(tmp_path):
-    """The lock of a job on another machine."""
-    path = tmp_path / lock.NAME
-    path.write_text('{"host": "elsewhere", "process": 1}')
-    return path
-
-
-def test_the_lock_of_another_machine_is_void_when_it_is_old(elsewhere):
-    folder = elsewhere.parent
-    assert lock.held(folder)
-    long_ago = time.time() - lock.STALE - 1.0
-    os.utime(elsewhere, (long_ago, long_ago))
-    ours = lock.Lock(folder)
-    ours.take()
-    assert lock.held(folder) and ours.mine
-    ours.release()
-    assert not elsewhere.exists() and not lock.held(folder) and not ours.mine
-
-
-def test_a_lost_machine_is_waited_for_no_longer_than_it_may_be_silent(elsewhere, monkeypatch, capsys):
-    monkeypatch.setattr(lock, "STALE", 0.6)
-    monkeypatch.setattr(lock, "LOOK", 0.1)
-    begin = time.monotonic()
-    lock.Lock(elsewhere.parent).take()
-    assert 0.4 < time.monotonic() - begin < 2.0
-    assert "locked by another job (host elsewhere, process 1); waiting up to 0.6 s" in capsys.readouterr().out
-
-
-def test_a_job_on_another_machine_that_lives_keeps_its_lock(elsewhere, monkeypatch):
-    monkeypatch.setattr(lock, "LOOK", 0.1)
-    threading.Timer(0.25, os.utime, [elsewhere]).start()
-    with pytest.raises(parsim.errors.InputError, match="host elsewhere, process 1"):
-        lock.Lock(elsewhere.parent).take()
-    assert elsewhere.read_text().startswith('{"host": "elsewhere"')
-
-
-def test_a_job_taken_for_dead_ends_when_it_wakes_and_touches_nothing(tmp_path, monkeypatch):
-    ours = lock.Lock(tmp_path)
-    ours.take()
-    ours.beat()
-    monkeypatch.setattr(lock, "BEAT", 0.0)
-    ours.beat()
-    ours.path.write_text('{"host": "elsewhere", "process": 1}')
-    with pytest.raises(parsim.errors.RunError, match="another job has taken"):
-        ours.beat()
-    ours.release()
-    assert "elsewhere" in ours.path.read_text() and not ours.mine
 
 
 @pytest.fixture

@@ -96,6 +96,63 @@ def test_usr1_reaches_the_ranks(program):
         assert job.wait(20) == 75
 
 
+SSH = """#!/bin/sh
+# a connection to another machine, where nothing of this environment is known
+while [ "${1#-}" != "$1" ]; do shift; done
+shift
+exec env -i HOME="$HOME" PATH=/usr/bin:/bin sh -c "$*"
+"""
+
+
+def test_ranks_on_other_machines_know_the_settings(program, monkeypatch):
+    if launch._open_mpi(launch.launcher()) < 5:
+        pytest.skip("only Open MPI 5 takes this stand-in for ssh")
+    agent = program(SSH, "ssh")
+    agent.chmod(0o755)
+    for name, text in (("NUMBA_NUM_THREADS", "3"), ("PARSIM_KERNEL", "host"), ("SOMETHING", "else")):
+        monkeypatch.setenv(name, text)
+    names = "NUMBA_NUM_THREADS", "PARSIM_KERNEL", "SOMETHING"
+    show = program(f"import os; print(*map(os.environ.get, {names}))")
+    monkeypatch.setenv("PRTE_MCA_plm", "ssh")
+    monkeypatch.setenv("PRTE_MCA_plm_ssh_agent", str(agent))
+    first, *rest = launch.command(2, [sys.executable, show])
+    ran = subprocess.run([first, "--host", "there:1,beyond:1", *rest], env=launch.environment(), capture_output=True,
+                         text=True, timeout=60)
+    assert ran.stdout.splitlines() == ["3 host None"] * 2, ran.stderr
+
+
+def test_mpirun_does_not_hear_what_a_scheduler_sends_to_all(program):
+    ranks = program(
+        "import os, signal, sys, time\n"
+        "from parsim import stop\n"
+        "stop.listen()\n"
+        "signal.signal(signal.SIGUSR1, lambda *_: sys.exit(75))\n"
+        "print(os.getppid(), flush=True)\n"
+        "time.sleep(30)\n"
+    )
+    line = f"import sys; from parsim import launch; sys.exit(launch.mpirun(1, [sys.executable, {str(ranks)!r}]))"
+    with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
+        os.kill(int(job.stdout.readline()), signal.SIGTERM)
+        with pytest.raises(subprocess.TimeoutExpired):
+            job.wait(2)
+        job.send_signal(signal.SIGTERM)
+        assert job.wait(20) == 75
+
+
+def test_signals_that_nohup_ignores_stay_ignored():
+    heard = []
+    with launch.heeding(lambda number, _: heard.append(number)):
+        os.kill(os.getpid(), signal.SIGHUP)
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with launch.heeding(lambda number, _: heard.append(number)):
+            os.kill(os.getpid(), signal.SIGHUP)
+            os.kill(os.getpid(), signal.SIGTERM)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    assert heard == [signal.SIGHUP, signal.SIGTERM]
+
+
 def test_the_terminal_that_open_mpi_gives_its_ranks_is_not_taken_for_one(mpirun, program):
     ran = mpirun(2, program("from parsim import launch; print('columns', launch.terminal())"))
     assert ran.stdout.split() == ["columns", "0"] * 2, ran.stderr

@@ -1,5 +1,6 @@
 """Progress: what it prints and when, on a terminal and in a log, and what a call costs."""
 
+import os
 import re
 import time
 
@@ -90,3 +91,13 @@ def test_words():
     words = [progress.duration(s) for s in (4.2, 60, 125, 3599, 7700, 86400, 4e5)]
     assert words == ["4.2 s", "1 min 00 s", "2 min 05 s", "59 min 59 s", "2 h 08 min", "24 h 00 min", "4 d 15 h"]
     assert [progress.quantity(n) for n in (950, 12345, 1.24e6, 3e9)] == ["950", "12.3 k", "1.24 M", "3 G"]
+
+
+def test_a_run_outlives_its_terminal(clock, tmp_path, monkeypatch):
+    with open(tmp_path / "log", "w") as log, open("/dev/full", "w") as full:
+        monkeypatch.setattr("sys.stdout", log)
+        before = progress.Progress(0.0, 1.0)
+        os.dup2(full.fileno(), log.fileno())
+        run(before, clock, 250)
+        before.close("done")
+        log.write("what waits is no fault either\n")

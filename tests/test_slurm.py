@@ -14,6 +14,7 @@ import parsim
 from jobs import CASE, time_of
 from parsim import variant
 from parsim.__main__ import main
+from parsim.output import checkpoint
 
 ROOT = Path(__file__).parents[1]
 PATIENCE = 600.0
@@ -29,7 +30,7 @@ def checkout(tmp_path):
     python.write_text(f'#!/bin/sh\nexport PYTHONPATH="{ROOT}"\nexec "{sys.executable}" "$@"\n')
     python.chmod(0o755)
     shutil.copy(CASE, root / "survive.toml")
-    (root / "long.toml").write_text('extends = "survive.toml"\n[run]\nuntil = 1.0\n[output]\nframes = 0.1\n')
+    (root / "long.toml").write_text('extends = "survive.toml"\n[run]\nuntil = 0.8\n[output]\nframes = 0.1\n')
     (root / "table.csv").write_text("water.viscosity,run.until\n1e-6,0.02\n2e-6,0.03\n")
     return root
 
@@ -68,30 +69,65 @@ def check_pieces(checkout, restarts, reasons, whole, capsys):
     """The pieces of a requeued run are one run."""
     log = (checkout / "job.log").read_text()
     print(log)
-    assert restarts >= 1 and log.count("back into the queue") == restarts
+    assert restarts >= 1 and "back into the queue" in log
     assert "parsim resume out -n 2 --walltime" in log and "done: t = " in log
     pieces = parsim.open(checkout / "out").info["pieces"]
     assert len(pieces) == restarts + 1 and {piece["ended"] for piece in pieces[:-1]} <= reasons
-    assert main(["run", str(checkout / "long.toml"), "-o", str(whole)]) == 0
+    assert main(["run", str(checkout / "long.toml"), "-o", str(whole), "-n", "2"]) == 0
     assert main(["compare", str(whole), str(checkout / "out")]) == 0, capsys.readouterr().out
 
 
-def test_a_job_goes_through_its_signal_and_the_queue_to_the_end(cluster, checkout, tmp_path, capsys):
-    job = submit(cluster, checkout, "-n", "2", "-t", "5", "jobs/slurm.sh", "long.toml", "out")
+def submitted(cluster, checkout, until, *words):
+    """Submit a job on two nodes and wait until its run is at time `until` (s)."""
+    job = submit(cluster, checkout, "-N", "2", "-n", "2", "-t", "5", *words, "jobs/slurm.sh", "long.toml", "out")
+    wait(lambda: time_of(checkout / "out") > until)
+    return job
+
+
+def wait(happened):
     begin = time.monotonic()
-    while time_of(checkout / "out") < 0.2:
+    while not happened():
         assert time.monotonic() - begin < PATIENCE
         time.sleep(0.05)
+
+
+def test_a_job_goes_through_a_signal_and_a_lost_node_to_the_end(cluster, checkout, tmp_path, capsys):
+    case = checkout / "long.toml"
+    case.write_text(case.read_text() + "checkpoints = 0.005\n")
+    job = submitted(cluster, checkout, 0.2)
     cluster.run("scancel", "--batch", "--signal=USR1", job)  # as Slurm itself does before the walltime
+    wait(lambda: time_of(checkout / "out") > 0.4)
+    cluster.lose(slurm.NODES[1])
     state, restarts, code = ended(cluster, job)
     assert (state, code) == ("COMPLETED", "0:0"), (checkout / "job.log").read_text()
-    check_pieces(checkout, restarts, {"SIGUSR1"}, tmp_path / "whole", capsys)
+    assert restarts == 2 and "killed, or lost with a node" in (checkout / "job.log").read_text()
+    check_pieces(checkout, restarts, {"SIGUSR1", "killed"}, tmp_path / "whole", capsys)
+
+
+def test_a_cancelled_job_leaves_a_checkpoint_and_stays_cancelled(cluster, checkout):
+    job = submitted(cluster, checkout, 0.1)
+    cluster.run("scancel", job)
+    assert ended(cluster, job)[:2] == ("CANCELLED", 0)
+    run = parsim.open(checkout / "out")
+    assert run.info["status"] == "stopped" and run.info["reason"] in ("SIGTERM", "SIGUSR1")
+    assert checkpoint.newest(run.folder)[0].account["time"] > 0.1
+
+
+@pytest.mark.slow
+def test_a_job_that_gives_way_to_another_goes_on_from_there(cluster, checkout):
+    job = submitted(cluster, checkout, 0.1)
+    cluster.run("scontrol", "requeue", job)  # as preemption does
+    wait(lambda: cluster.state(job)[1] == 1 and time_of(checkout / "out") > 0.3)
+    cluster.run("scancel", job)
+    ended(cluster, job)
+    pieces = parsim.open(checkout / "out").info["pieces"]
+    assert [piece["ended"] for piece in pieces] == ["SIGTERM"] * 2 and pieces[1]["from_step"] > 100
 
 
 @pytest.mark.slow
 def test_a_job_goes_through_its_walltime_and_the_queue_to_the_end(cluster, checkout, tmp_path, capsys):
     case = checkout / "long.toml"
-    case.write_text(case.read_text().replace("until = 1.0", "until = 20.0").replace("frames = 0.1", "frames = 1.0"))
+    case.write_text(case.read_text().replace("until = 0.8", "until = 20.0").replace("frames = 0.1", "frames = 1.0"))
     job = submit(cluster, checkout, "-n", "2", "-t", "1", "--signal=B:USR1@0", "jobs/slurm.sh", "long.toml", "out")
     state, restarts, code = ended(cluster, job)
     assert (state, code) == ("COMPLETED", "0:0"), (checkout / "job.log").read_text()
@@ -104,7 +140,7 @@ def test_a_table_makes_an_array_of_runs(cluster, checkout):
     states = [ended(cluster, f"{job}_{task}") for task in (1, 2, 3)]
     assert [state[0] for state in states] == ["COMPLETED", "COMPLETED", "FAILED"]
     assert [parsim.open(checkout / f"out-{task}").case["run"]["until"] for task in (1, 2)] == [0.02, 0.03]
-    assert "row 3 of table.csv has 0 values for 2 keys" in (checkout / "job-3.log").read_text()
+    assert "--row = 3: table.csv has 2 rows; allowed: 1 to 2" in (checkout / "job-3.log").read_text()
     assert not (checkout / "out-3").exists()
 
 
@@ -116,18 +152,25 @@ def test_a_checkout_without_an_environment_is_told(cluster, checkout):
 
 
 PARSIM = """#!/bin/bash
-# notes how parsim was called, leaves a checkpoint, and ends as the test wants
+# notes how parsim was called, leaves a checkpoint and a status, and ends as the test wants
 printf '%s\\n' "$*" >>"$CALLS"
-mkdir -p out/checkpoints && touch out/case.toml "out/checkpoints/checkpoint_$RANDOM.h5"
+mkdir -p out/checkpoints && touch out/case.toml
+[[ ${FAKE_CHECKPOINT:-yes} == no ]] || touch "out/checkpoints/checkpoint_$RANDOM.h5"
+printf '"status": "%s"\\n' "${FAKE_STATUS:-failed}" >out/run.json
 exit "$FAKE_CODE"
 """
 QSTAT = """#!/bin/bash
 cat <<'TOLD'
 Job Id: 7.server
+    Job_Name = ice 1
     resources_used.walltime = 00:10:00
     queue = workq
-    Resource_List.select = 2:ncpus=2:mpiprocs=2
+    Resource_List.place = scatter
+    Resource_List.select = 2:ncpus=2:mpiprocs=2:host=a-node-with-a-very-long-name-that-b
+\treaks=the+line
     Resource_List.walltime = 01:30:00
+    Account_Name = rivers
+    project = _pbs_project_default
 TOLD
 """
 
@@ -160,11 +203,13 @@ def test_pbs_starts_then_goes_on_and_submits_what_is_left(pbs):
     assert code == 75 and "submitting what is left" in said
     assert calls == [
         "-P -m parsim run long.toml -o out -n 4 --walltime 0:4800",
-        "qsub -q workq -l select=2:ncpus=2:mpiprocs=2 -l walltime=01:30:00 "
-        "-v CASE=long.toml,OUT=out,TABLE=,ROW=,PARSIM=. ./jobs/pbs.sh",
+        "qsub -N ice 1 -A rivers -q workq "
+        "-l select=2:ncpus=2:mpiprocs=2:host=a-node-with-a-very-long-name-that-breaks=the+line "
+        "-l place=scatter -l walltime=01:30:00 -v CASE=long.toml,OUT=out,TABLE=,ROW=,PARSIM=. ./jobs/pbs.sh",
     ]
     code, calls, _ = pbs(0, CASE="long.toml", OUT="out")
     assert code == 0 and calls == ["-P -m parsim resume out -n 4 --walltime 0:4800"]
+    assert len(pbs(75, CASE="long.toml", OUT="out", FAKE_CHECKPOINT="no")[1]) == 1
 
 
 @pytest.mark.parametrize("code", [1, 2, 74])
@@ -173,9 +218,16 @@ def test_pbs_submits_nothing_after_a_failure(pbs, code):
     assert len(pbs(code, CASE="long.toml", OUT="out")[1]) == 1
 
 
+def test_pbs_goes_on_after_a_kill_as_long_as_the_run_comes_further(pbs):
+    code, calls, said = pbs(137, CASE="long.toml", OUT="out", FAKE_STATUS="running")
+    assert code == 137 and calls[1].startswith("qsub ") and "killed, or lost with a node" in said
+    code, calls, said = pbs(137, CASE="long.toml", OUT="out", FAKE_STATUS="running", FAKE_CHECKPOINT="no")
+    assert code == 137 and len(calls) == 1 and "no new checkpoint in this stretch" in said
+
+
 def test_pbs_takes_a_row_of_a_table(pbs):
     _, calls, _ = pbs(0, CASE="long.toml", OUT="other", TABLE="table.csv", PBS_ARRAY_INDEX="2")
-    assert calls[0].startswith("-P -m parsim run long.toml -o other-2 --set water.viscosity=2e-6 --set run.until=0.03 ")
+    assert calls[0].startswith("-P -m parsim run long.toml -o other-2 --table table.csv --row 2 -n 4 ")
     assert "a table needs an array job" in pbs(0, CASE="long.toml", TABLE="table.csv")[2]
     assert pbs(0)[0] == 2
 

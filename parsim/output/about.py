@@ -1,0 +1,26 @@
+"""What the command `info` says of an output folder."""
+
+from parsim.output.lock import held
+from parsim.output.reader import open as open_run
+
+
+def main(out):
+    """Print what the output folder `out` holds. Raises InputError when it is none."""
+    found = open_run(out)
+    told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}
+    if told.get("status") == "running" and not held(out):
+        told["status"] = "killed, or lost with its machine; `parsim resume` goes on"
+    told["pieces"] = "; ".join(f"from step {piece['from_step']} on {piece['ranks']} ranks: {piece.get('ended', '')}"
+                               for piece in found.info.get("pieces", ()))
+    told |= {key: _flat(value) for key, value in found.info.items()
+             if value and key != "pieces" and isinstance(value, dict | list)}
+    frames = found.times("water")
+    told["frames"] = f"{len(frames)}, {frames[0]:g} to {frames[-1]:g} s" if len(frames) else "none"
+    told["series"] = ", ".join(found.series_names) or "none"
+    print(found.case.get("title") or out)
+    print(*(f"  {key:<10} {value}" for key, value in told.items()), sep="\n")
+
+
+def _flat(value):
+    """A table or list on one line."""
+    return "; ".join(f"{key} {value[key]}" for key in value) if isinstance(value, dict) else "; ".join(map(str, value))
