@@ -25,8 +25,8 @@ Count = Annotated[Whole, Field(ge=1, le=10**9)]
 Switch = Annotated[bool, Strict()]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,63}$")]
 Vector = tuple[Number, Number, Number]
-Length = Annotated[Real, Field(ge=1e-9, le=1e9)]
-Size = tuple[Length, Length, Length]
+Moderate = Annotated[Real, Field(ge=1e-9, le=1e9)]
+Size = tuple[Moderate, Moderate, Moderate]
 Place = tuple[Number, Number, Number | Literal["float"]]
 Face = Literal["wall", "open", "periodic"]
 
@@ -75,7 +75,7 @@ class Water(Table):
     scheme: Literal["wcmps"] = Field("wcmps", description="weakly compressible moving particles (Mellado 2021, ch. 5)")
     density: Positive = Field(1000.0, description="density, kg/m3")
     viscosity: NotNegative = Field(1e-6, description="kinematic viscosity, m2/s")
-    speed: Positive | None = Field(
+    speed: Moderate | None = Field(
         None, description="largest expected speed, m/s; left out: 2 sqrt(g H), H the greatest depth of the fill"
     )
     sound: Real = Field(10.0, ge=5, le=1000, description="speed of sound over the largest expected speed")

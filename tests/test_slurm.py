@@ -121,13 +121,13 @@ def test_a_job_that_gives_way_to_another_goes_on_from_there(cluster, checkout):
     cluster.run("scancel", job)
     ended(cluster, job)
     pieces = parsim.open(checkout / "out").info["pieces"]
-    assert [piece["ended"] for piece in pieces] == ["SIGTERM"] * 2 and pieces[1]["from_step"] > 100
+    assert {piece["ended"] for piece in pieces} <= {"SIGTERM", "SIGUSR1"} and pieces[1]["from_step"] > 100
 
 
 @pytest.mark.slow
 def test_a_job_goes_through_its_walltime_and_the_queue_to_the_end(cluster, checkout, tmp_path, capsys):
     case = checkout / "long.toml"
-    case.write_text(case.read_text().replace("until = 0.8", "until = 20.0").replace("frames = 0.1", "frames = 1.0"))
+    case.write_text(case.read_text().replace("until = 0.8", "until = 10.0").replace("frames = 0.1", "frames = 1.0"))
     job = submit(cluster, checkout, "-n", "2", "-t", "1", "--signal=B:USR1@0", "jobs/slurm.sh", "long.toml", "out")
     state, restarts, code = ended(cluster, job)
     assert (state, code) == ("COMPLETED", "0:0"), (checkout / "job.log").read_text()
