@@ -227,8 +227,8 @@ def test_shifting_never_moves_water_out_through_the_surface(slab):
     p = domain.particles
     p.ax[:], p.ay[:], p.az[:] = 0.3, 0.0, -1.0  # a concentration that falls upward, as at any free surface
     surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
-                  p.c, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number, 0.1, 0.005,
-                  p.ax, p.ay, p.az, p.surface, p.n)
+                  p.c, p.scale, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number,
+                  0.1, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
     at, z = near.fluid, p.z[near.fluid]
     assert p.az[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(0.0, abs=1e-12)
     assert p.ax[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(-0.0012)
@@ -243,8 +243,8 @@ def shifted_density(domain, near, scheme, pull):
     p = domain.particles
     p.n[:], p.ax[:], p.ay[:], p.az[:] = 1.01 * scheme.number, 0.0, 0.0, 0.0
     surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
-                  p.c, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number, pull, 0.005,
-                  p.ax, p.ay, p.az, p.surface, p.n)
+                  p.c, p.scale, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number,
+                  pull, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
     return p.n[near.fluid] / scheme.number
 
 
@@ -259,6 +259,23 @@ def test_density_goes_back_to_that_of_the_arrangement_where_no_surface_is_near(s
     domain.particles.n[:] = scheme.number
     domain.particles.c[:] = sweep(domain.particles, near, scheme)
     assert shifted_density(domain, near, scheme, 0.1) == pytest.approx(1.009, abs=1e-12)
+
+
+def test_the_packing_makes_up_for_what_a_surface_cuts_off(slab):
+    domain, near, scheme = slab
+    p = domain.particles
+    inside = near.fluid[(p.z[near.fluid] > 0.1) & (p.z[near.fluid] < 0.5)]
+    assert p.c[inside].min() < 0.95
+    for i in inside:
+        row = near.index[near.start[i] : near.end[i]]
+        away = np.stack([p.x[row] - p.x[i], p.y[row] - p.y[i], p.z[row] - p.z[i]], 1)
+        r = np.sqrt((away**2).sum(1))
+        weight = np.maximum(scheme.radius / r - 1.0, 0.0)
+        slow = weight.sum() + surface._CUT * np.sqrt(((weight / r) @ away) @ ((weight / r) @ away))
+        given = near.start[i], near.middle[i], near.end[i], near.index
+        fast = surface.packing(i, *given, p.x, p.y, p.z, p.scale, scheme.radius)
+        assert fast == pytest.approx(slow, rel=1e-12)
+        assert fast == pytest.approx(scheme.number, rel=0.05)
 
 
 def test_the_cells_near_the_surface_hold_all_that_list_a_surface_particle(slab):
@@ -276,8 +293,8 @@ def test_shifts_are_cut_to_their_longest(slab):
     p = domain.particles
     p.ax[:], p.ay[:], p.az[:] = 30.0, 40.0, 0.0
     surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
-                  p.c, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number, 0.1, 0.005,
-                  p.ax, p.ay, p.az, p.surface, p.n)
+                  p.c, p.scale, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01, scheme.number,
+                  0.1, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
     moved = np.sqrt(p.ax**2 + p.ay**2 + p.az**2)[near.fluid]
     assert moved.max() == pytest.approx(0.01) and (p.kind[near.fluid] == FLUID).all()
 

@@ -37,6 +37,16 @@ def bottom(s):
     return (p.p[low] / (9810.0 * (0.1 - p.z[low]))).mean()
 
 
+@pytest.mark.parametrize("rows", [3, 5, 7])
+def test_thin_water_at_rest_keeps_its_level(rows):
+    level = 0.01 * rows
+    s = simulation(TANK | {"water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, level]}]}})
+    while s.time < 4.0:
+        s.step()
+    p, at = s.domain.particles, s.near.fluid
+    assert 2 * p.z[at].mean() / level == pytest.approx(1.0, abs=0.02)
+
+
 def test_water_at_rest_stays_at_rest():
     s = simulation(TANK)
     pressures, speeds = [], []
