@@ -31,6 +31,7 @@ Walltime = Annotated[str | None, typer.Option(
     metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over")]
 TableFile = Annotated[Path | None, typer.Option(
     "--table", metavar="TABLE", help="CSV: the first line names keys of the case, each further line is a run")]
+Row = Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")]
 Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
 
 
@@ -54,15 +55,6 @@ def command(function):
     return function
 
 
-def _row(table, row):
-    """The changes that a row of a table makes."""
-    from parsim.case_table import row as row_of
-
-    if (table is None) != (row is None):
-        raise InputError("--table TABLE and --row N belong together")
-    return row_of(table, row) if table else []
-
-
 @command
 def run(
     case: CaseFile,
@@ -70,7 +62,7 @@ def run(
     until: Until = None,
     changes: Changes = None,
     table: TableFile = None,
-    row: Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")] = None,
+    row: Row = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite an output folder")] = False,
     threads: Threads = None,
     ranks: Ranks = None,
@@ -80,11 +72,10 @@ def run(
     """Run a case. Under mpirun or srun every rank runs this command."""
     from parsim.check import load
 
-    changes = [*(changes or ()), *_row(table, row)]
-    loaded, limit = load(case, changes, until), _settings(threads, kernel, walltime)
+    loaded, limit = load(case, changes, until, table, row), _settings(threads, kernel, walltime)
     if ranks:
-        words = ["run", case, "-o", out, *(word for change in changes for word in ("--set", change))]
-        return _launched(ranks, words + ["--force"] * force, until, kernel, limit)
+        words = ["run", case, "-o", out, *_words(changes, table, row), *["--force"] * force]
+        return _launched(ranks, words, until, kernel, limit)
     from parsim.warm import prepare
 
     prepare()
@@ -101,26 +92,39 @@ def resume(
     ranks: Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="another kernel variant: other last bits")] = None,
     walltime: Walltime = None,
+    case: Annotated[Path | None, typer.Option(
+        "--case", metavar="CASE", help="go on only if the run is of this case; its end holds")] = None,
+    changes: Changes = None,
+    table: TableFile = None,
+    row: Row = None,
 ):
     """Go on with a run from its newest whole checkpoint, on any number of ranks, to the same bits."""
     from parsim import variant
+    from parsim.check import load
     from parsim.comm import Comm
+    from parsim.output import folder as folders
     from parsim.resume import find
 
     limit = _settings(threads, kernel, walltime)
+    if case is None and (changes or table or row):
+        raise InputError("--set, --table and --row belong to the case that --case names")
+    wanted = load(case, changes, until, table, row) if case else None
     if ranks:
-        return _launched(ranks, ["resume", out], until, kernel, limit)
-    case, checkpoint = Comm().first(find, out, until, kernel)
-    if case is None:
-        return exits.DONE
-    if checkpoint and kernel is None:
-        os.environ[variant.NAME] = variant.checked(checkpoint.account["kernel"])
-    from parsim.warm import prepare
+        words = ["resume", out, *(["--case", case] if case else []), *_words(changes, table, row)]
+        return _launched(ranks, words, until, kernel, limit)
+    with folders.Folder(out, Comm()) as folder:
+        folder.take()
+        found = folder.comm.first(find, out, until, kernel, wanted)
+        if found is None:
+            return exits.DONE
+        if found.kernel:
+            os.environ[variant.NAME] = variant.checked(found.kernel)
+        from parsim.warm import prepare
 
-    prepare()
-    from parsim.solver import resume as solve
+        prepare()
+        from parsim.solver import resume as solve
 
-    return solve(case, out, checkpoint, limit)
+        return solve(found, folder, limit)
 
 
 def _settings(threads, kernel, walltime):
@@ -134,6 +138,12 @@ def _settings(threads, kernel, walltime):
     return None if walltime is None else stop.seconds(walltime)
 
 
+def _words(changes, table, row):
+    """The options that say how a case is changed, for the ranks."""
+    words = [word for change in changes or () for word in ("--set", change)]
+    return words + (["--table", table, "--row", row] if table else [])
+
+
 def _launched(ranks, words, until, kernel, limit):
     from parsim.launch import mpirun, world
 
@@ -144,7 +154,7 @@ def _launched(ranks, words, until, kernel, limit):
     if limit is not None:  # that of the ranks began when this process did
         left = max(round(limit - stop.age()), 1)
         words += ["--walltime", f"{left // 60}:{left % 60:02d}"]
-    return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)], stop.early())
+    return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)], stop.early)
 
 
 @command

@@ -14,6 +14,9 @@ def rows(path):
     """
     keys, *lines = _lines(Path(path))
     messages = [] if all(keys) else [f"{path}: column {keys.index('') + 1} names no key"]
+    messages += [f"{path}: two columns are named {key}" for key in dict.fromkeys(keys) if keys.count(key) > 1 and key]
+    if ";" in keys[0]:
+        messages.append(f"{path}: separated by semicolons; separate the values with commas")
     messages += [f"{path}: row {number} has {len(cells)} values for {len(keys)} keys"
                  for number, cells in enumerate(lines, 1) if len(cells) != len(keys)]
     if messages:

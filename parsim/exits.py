@@ -25,7 +25,8 @@ def code_of(work):
             print(f"error: {error}", file=sys.stderr, flush=True)
         return _together(FAILED)
     except WriteError as error:
-        print(f"error: {error}", file=sys.stderr, flush=True)
+        if rank == 0:
+            print(f"error: {error}", file=sys.stderr, flush=True)
         return _together(CANNOT_WRITE)
     except KeyboardInterrupt:
         return INTERRUPTED

@@ -31,7 +31,7 @@ _RAW = ("--output", ":raw")  # of mpirun: show what is no whole line yet
 _HANDED_ON = ("NUMBA_", "OMP_NUM_THREADS", "PARSIM_")
 _PR_SET_PDEATHSIG = 1
 _END = signal.SIGINT  # what ends mpirun at once
-_STARTING = 3.0  # s after which every rank listens to signals
+_STARTING = 5.0  # s after which every rank listens to signals
 SAME_SIGNAL = 1.0  # s within which a second signal is the first one on another way
 _SUM = "from mpi4py import MPI; c = MPI.COMM_WORLD; print('sum', c.allreduce(c.rank + 1), 'of', c.size)"
 _LIBRARY = """
@@ -177,12 +177,12 @@ def environment():
     return variables
 
 
-def mpirun(ranks, arguments, stopped=False):
+def mpirun(ranks, arguments, stopped=lambda: False):
     """Run `arguments` (a list, the program first) as `ranks` processes and return the exit code of the job.
 
     Each of SIGNALS comes to the ranks as SIGUSR1, for mpirun leaves them no time after the others; a second one other
-    than SIGUSR1 ends the job at once. `stopped`: SIGUSR1 has come already. The job is ended too when this process is
-    killed.
+    than SIGUSR1 ends the job at once. `stopped`() tells whether SIGUSR1 has come before. The job is ended too when this
+    process is killed.
     """
     heard, began = [], time.monotonic()
 
@@ -198,10 +198,15 @@ def mpirun(ranks, arguments, stopped=False):
     process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL, process_group=0,
                                preexec_fn=_as_child)
     with heeding(hand_on):
-        if stopped:
+        if stopped():
             hand_on(signal.SIGUSR1, None)
         code = process.wait()
     return code if code >= 0 else 128 - code
+
+
+def die_with_parent(number=signal.SIGKILL):
+    """Ask Linux to send this process a signal when its parent is gone."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, number)
 
 
 @contextmanager
@@ -224,7 +229,7 @@ def _as_child():
     A scheduler sends that to all processes of a job at once, and mpirun would kill the ranks half a second after it.
     """
     signal.signal(_END, signal.SIG_DFL)  # shells let programs in the background ignore it
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, _END)
+    die_with_parent(_END)
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
 
 

@@ -34,14 +34,14 @@ class Simulation:
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
         self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
-        self._uneven_sum, self._uneven_most, self.gone = 0.0, 1.0, []
+        self._uneven, self.gone = [0.0, 1.0, 0], []  # sum, most and number of looks
         self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
         if snapshot is None:
             self.domain.cut_evenly(*columns(case))
             self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
             self._balance(True)
             self._rebuild(self.fluid)  # with cuts that know the walls and bodies too
-            self.rebuilds, self._uneven_sum, self._uneven_most = 0, 0.0, 1.0
+            self.rebuilds, self._uneven = 0, [0.0, 1.0, 0]
             self._look()
         else:
             self._restore(snapshot)
@@ -54,12 +54,13 @@ class Simulation:
     @property
     def uneven(self):
         """Largest work of a rank over the mean before each rebuild: the mean of that, and the most."""
-        return self._uneven_sum / self.rebuilds if self.rebuilds else 1.0, self._uneven_most
+        total, most, looks = self._uneven
+        return total / looks if looks else 1.0, most
 
     def snapshot(self):
         """All that a restart needs, before a step that rebuilds; called on all ranks together."""
         lost, = self.domain.count(self.domain.lost)
-        account = {"lost": lost, "uneven": [self._uneven_sum, self._uneven_most]}
+        account = {"lost": lost, "uneven": list(self._uneven)}
         account |= {name: getattr(self, name) for name in _COUNTERS}
         return Snapshot(self.fluid, self.bodies.kept(), self.contacts.kept(), account)
 
@@ -67,7 +68,7 @@ class Simulation:
         """Go on from a snapshot: the rebuild that the step after it began with is made here."""
         for name in _COUNTERS:
             setattr(self, name, snapshot.account[name])
-        self._uneven_sum, self._uneven_most = snapshot.account["uneven"]
+        self._uneven = list(snapshot.account["uneven"])
         self.domain.lost = snapshot.account["lost"] if self.comm.rank == 0 else 0
         self.bodies.restore(snapshot.bodies)
         self.contacts.restore(snapshot.contacts)
@@ -149,8 +150,8 @@ class Simulation:
     def _balance(self, move):
         with self.timers("rebuild"):
             self.domain.balance(self.near.work(self.domain), move)
-        self._uneven_sum += self.domain.uneven
-        self._uneven_most = max(self._uneven_most, self.domain.uneven)
+        total, most, looks = self._uneven
+        self._uneven = [total + self.domain.uneven, max(most, self.domain.uneven), looks + 1]
 
     def _rebuild(self, fluid):
         domain, near = self.domain, self.near
@@ -204,20 +205,19 @@ def run(case, source, out, force=False, walltime=None):
     `walltime`, s: of the job. Returns 0, or 75 when the run was stopped before its end and has left a checkpoint.
     Raises InputError for what the case cannot do on this many ranks, WriteError where nothing can be written.
     """
-    comm = _comm(case)
-    folder = Folder(out, comm)
-    folder.make(case, source, force)
-    return _advance(case, folder, Path(source).stem, walltime)
+    with Folder(out, _comm(case)) as folder:
+        folder.make(case, source, force)
+        return _advance(case, folder, Path(source).stem, walltime)
 
 
-def resume(case, out, checkpoint=None, walltime=None):
-    """Go on with a run in the folder `out` from a checkpoint, or from the beginning; as `run`."""
-    comm = _comm(case)
-    folder = Folder(out, comm)
-    account = checkpoint.account if checkpoint else None
-    folder.reopen(case, account)
-    name = account["name"] if account else ""
-    return _advance(case, folder, name, walltime, account, checkpoint and checkpoint.snapshot(comm.rank, comm.size))
+def resume(found, folder, walltime=None):
+    """Go on with what `parsim.resume` has found in a Folder that is taken; as `run`."""
+    folder.comm = comm = _comm(found.case)
+    account = snapshot = None
+    if found.checkpoint:
+        account, snapshot = found.checkpoint.account, found.checkpoint.snapshot(comm.rank, comm.size)
+    folder.reopen(found.case, account)
+    return _advance(found.case, folder, found.name, walltime, account, snapshot)
 
 
 def _comm(case):

@@ -71,7 +71,8 @@ def seconds(text):
     days, dash, rest = str(text).rpartition("-")
     parts = rest.split(":")
     numbers = [days, *parts] if dash else parts
-    if not all(number.isdecimal() for number in numbers) or len(parts) > 3 or (dash and len(parts) != 3):
+    whole = all(number.isdecimal() and len(number) < 10 for number in numbers)
+    if not whole or len(parts) > 3 or (dash and len(parts) != 3):
         raise InputError(f"walltime = {text}: must be minutes, or minutes:seconds, hours:minutes:seconds or "
                          "days-hours:minutes:seconds, such as 12:00:00")
     if len(numbers) == 1:

@@ -9,6 +9,7 @@ import functools
 import hashlib
 import os
 import platform
+import re
 import sys
 import tempfile
 from difflib import get_close_matches
@@ -125,10 +126,10 @@ def _cache():
     """Folder for the machine code: the first that holds it or can be written, of the user's and a temporary one."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     first = Path(given) if given else _folder()
-    if first.name != source_hash():  # else the parent process has been here
-        first = first / source_hash()
-    folder = first
-    for folder in (first, _spare() / source_hash()):
+    if re.fullmatch("[0-9a-f]{16}", first.name):  # the parent process has been here, maybe with another variant
+        first = first.parent
+    first, folder = first / code(), None
+    for folder in (first, _spare() / code()):
         if mark(folder).exists() or _writable(folder):
             break
     if folder != first and launch.world()[0] == 0:

@@ -5,6 +5,7 @@ the cache: the last bit of a result would tell a first run from a second, and on
 code that it compiled itself, and the ranks of a cold start do not compile the same thing side by side.
 """
 
+import fcntl
 import json
 import os
 import pickle
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import time
 import zlib
+from contextlib import suppress
 from pathlib import Path
 
 from parsim import launch, variant
@@ -56,6 +58,15 @@ def prepare():
 
 
 def _compile(mark):
+    """Compile everything, but for what another job has compiled while this one waited for it."""
+    with open(mark.parent / "lock", "w") as file:
+        with suppress(OSError):  # where the file system has no locks
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if not _whole(mark):
+            _compile_alone(mark)
+
+
+def _compile_alone(mark):
     if launch.world()[0] == 0:
         reason = "the cache is damaged" if mark.exists() else "once per version"
         print(f"compiling the kernels: {reason}, about a minute", flush=True)
@@ -63,7 +74,8 @@ def _compile(mark):
         path.unlink()
     environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
     # in a process group of its own: mpirun sends signals to all of a rank's
-    subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True, process_group=0)
+    subprocess.run([sys.executable, "-P", "-m", "parsim.warm"], env=environment, check=True, process_group=0,
+                   preexec_fn=launch.die_with_parent)
     sums = {str(path.relative_to(mark.parent)): _sum(path) for path in _code(mark.parent)}
     draft = mark.with_suffix(f".{os.getpid()}")
     draft.write_text(json.dumps(sums), encoding="utf-8")

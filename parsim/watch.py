@@ -58,7 +58,7 @@ class Watch:
             if not self._ring or now - sent < every:
                 continue
             if now - sent > 3.0 * every + _ORPHAN:  # this process itself has slept: judge nobody by that
-                since = now
+                since = moved = now
             sent = now
             self._ring.send(self._comm.calls, self._comm.waiting)
             news = self._ring.receive()

@@ -62,7 +62,7 @@ def test_check_looks_at_every_row(table, tmp_path, capsys):
     case = str(write(tmp_path)["2d"])
     assert main(["check", case, "--table", str(table("run.until\n1.0\n2.0\n"))]) == 0
     out = capsys.readouterr().out
-    assert "2 valid cases, for --array=1-2" in out and "row 2 " in out and "run.until=2.0" in out
+    assert "every row is a valid case, for --array=1-2" in out and "row 2 " in out and "run.until=2.0" in out
     assert main(["check", case, "--table", str(table("run.until,spacing\n1.0,0.01\n-1.0,0.01\n1.0,0.3\n"))]) == 2
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 3 and "row 2: run.until = -1.0" in said[0] and all("row 3: " in line for line in said[1:])

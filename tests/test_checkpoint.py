@@ -151,17 +151,6 @@ def test_a_finished_run_is_left_alone(finished, capsys):
     assert (finished / "run.json").read_text() == before
 
 
-def test_before_the_first_checkpoint_a_run_begins_again(finished, tmp_path, capsys):
-    out = tmp_path / "out"
-    shutil.copytree(finished, out)
-    shutil.rmtree(out / checkpoint.FOLDER)
-    (out / "run.json").write_text(json.dumps({"status": "running"}))
-    (out / "frames" / "water_000999.vtkhdf").write_text("left over")
-    assert main(["resume", str(out)]) == 0
-    assert "no checkpoint" in capsys.readouterr().out
-    assert main(["compare", str(finished), str(out)]) == 0, capsys.readouterr().out
-
-
 def test_only_broken_checkpoints_are_refused(finished, tmp_path, capsys):
     out = tmp_path / "out"
     shutil.copytree(finished, out)
@@ -192,39 +181,6 @@ def test_what_cannot_go_on_is_refused(finished, tmp_path, capsys, monkeypatch):
     assert "this is 0.1; last bits may differ" in capsys.readouterr().err
     assert main(["resume", str(out), "--walltime", "soon"]) == 2
     assert "walltime = soon: must be minutes" in capsys.readouterr().err
-
-
-def test_the_end_that_was_asked_for_last_holds_and_other_changes_do_not(finished, tmp_path, capsys):
-    out = tmp_path / "out"
-    shutil.copytree(finished, out)
-    (out / "run.json").write_text(json.dumps({"status": "running"}))
-    case = (out / "case.toml").read_text()
-    (out / "case.toml").write_text(case.replace("until = 0.1", "until = 0.2").replace("cfl = 1.0", "cfl = 0.5"))
-    found, _ = find(out)
-    assert found.run.until == 0.2 and found.run.cfl == 1.0
-    assert "case.toml: run.cfl: not as in the checkpoint, which holds" in capsys.readouterr().err
-    assert find(out, 0.3)[0].run.until == 0.3
-    (out / "case.toml").write_text(case[: len(case) // 2] + "=")
-    assert find(out)[0].run.until == 0.1
-    assert "not valid TOML" in capsys.readouterr().err
-
-
-def test_a_run_goes_on_though_frames_and_series_were_moved_away(finished, tmp_path):
-    out = tmp_path / "out"
-    shutil.copytree(finished, out)
-    for name in ("frames", "series", "case.toml"):
-        shutil.move(out / name, tmp_path / name)
-    assert main(["resume", str(out), "--until", "0.11"]) == 0
-    assert parsim.open(out).case["run"]["until"] == 0.11 and len(list((out / "frames").iterdir())) > 0
-
-
-def test_a_folder_that_was_left_half_made_can_be_gone_on_with_or_replaced(finished, tmp_path):
-    out = tmp_path / "out"
-    out.mkdir()
-    shutil.copy(finished / "case.toml", out)
-    assert main(["resume", str(out), "--until", "0.01"]) == 0
-    (out / "run.json").unlink()
-    assert main(["run", str(CASE), "-o", str(out), "--until", "0.01", "--force"]) == 0
 
 
 def test_info_tells_of_the_pieces(finished, capsys):

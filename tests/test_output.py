@@ -170,7 +170,7 @@ def test_a_resumed_table_equals_an_uninterrupted_one(tmp_path):
 def test_a_folder_that_is_no_output_is_refused_with_the_nearest(written, tmp_path):
     with pytest.raises(InputError, match="no such folder.*did you mean .*/a?"):
         parsim.open(written.parent / "aa")
-    with pytest.raises(InputError, match="neither run.json nor case.toml"):
+    with pytest.raises(InputError, match="neither run.json nor a checkpoint"):
         parsim.open(tmp_path)
     with pytest.raises(InputError, match="did you mean energy"):
         parsim.open(written).series("enrgy")

@@ -70,7 +70,7 @@ def check_pieces(checkout, restarts, reasons, whole, capsys):
     log = (checkout / "job.log").read_text()
     print(log)
     assert restarts >= 1 and "back into the queue" in log
-    assert "parsim resume out -n 2 --walltime" in log and "done: t = " in log
+    assert "parsim resume out --case long.toml -n 2 --walltime" in log and "done: t = " in log
     pieces = parsim.open(checkout / "out").info["pieces"]
     assert len(pieces) == restarts + 1 and {piece["ended"] for piece in pieces[:-1]} <= reasons
     assert main(["run", str(checkout / "long.toml"), "-o", str(whole), "-n", "2"]) == 0
@@ -208,7 +208,7 @@ def test_pbs_starts_then_goes_on_and_submits_what_is_left(pbs):
         "-l place=scatter -l walltime=01:30:00 -v CASE=long.toml,OUT=out,TABLE=,ROW=,PARSIM=. ./jobs/pbs.sh",
     ]
     code, calls, _ = pbs(0, CASE="long.toml", OUT="out")
-    assert code == 0 and calls == ["-P -m parsim resume out -n 4 --walltime 0:4800"]
+    assert code == 0 and calls == ["-P -m parsim resume out --case long.toml -n 4 --walltime 0:4800"]
     assert len(pbs(75, CASE="long.toml", OUT="out", FAKE_CHECKPOINT="no")[1]) == 1
 
 

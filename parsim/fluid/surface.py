@@ -72,10 +72,10 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
 
     Shifting moves particles but not the evolved n, and diffusion across the surface feeds it: unseen, water at rest
     would swell, 20 deep by 0.05 % a second in 2D and 0.1 % in 3D, 6 deep by 0.8 % and 3 deep by 10 %. So n goes back to
-    the kernel sum, by the share `pull`, where neither surface nor wall is within sqrt(near2): beside a wall the sum is
-    0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40. Water so thin that it has
-    no such place is pulled near the surface where a wall is in the support, and more strongly, to the sum with what the
-    surface has cut off (`packing`), which is 1 to 2 % too low in the rows below it.
+    the kernel sum, by the share `pull`, where no surface is in the support and no wall within sqrt(near2): beside a wall
+    the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40. Water so thin
+    that it has no such place is pulled where it sees both, and more strongly, to the sum with what the surface has cut
+    off (`packing`), which is 1 to 2 % too low in the rows below it.
     At the surface, where the pressure is zero whatever n is, n stays within the share `loosest` of n0: a drop must not
     come back with another pressure than the flow can have.
     """
@@ -88,7 +88,7 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
             continue
         mx, my, mz = nx[i], ny[i], nz[i]
         sx, sy, sz = -factor * ax[i], -factor * ay[i], -factor * az[i]
-        inside = surface[i] == INTERNAL
+        inside, seen = surface[i] == INTERNAL, False
         if near[i] and inside:
             for t in range(np.uint64(start[i]), np.uint64(middle[i])):
                 j = index[t]
@@ -98,20 +98,21 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
                     if r2 < near2:
                         surface[i] = VICINITY
                     wt = max(radius / math.sqrt(r2) - 1.0, 0.0)
+                    seen = seen or wt > 0.0
                     mx += nx[j] * wt
                     my += ny[j] * wt
                     mz += nz[j] * wt
         if inside:
             t, beside = middle[i], False
-            limit2 = near2 if surface[i] == INTERNAL else radius * radius
+            limit2 = radius * radius if seen else near2
             while not beside and t < end[i]:
                 j = index[t]
                 dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
                 beside = dx * dx + dy * dy + dz * dz < limit2
                 t += 1
-            if surface[i] == INTERNAL and not beside:
+            if not seen and not beside:
                 n[i] += pull * (n0 * c[i] - n[i])
-            elif surface[i] == VICINITY and beside:
+            elif seen and beside:
                 whole = packing(i, start[i], middle[i], end[i], index, x, y, z, scale, radius)
                 n[i] += _SQUEEZED * pull * (whole - n[i])
         if surface[i] != INTERNAL:

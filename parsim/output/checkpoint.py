@@ -14,6 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from parsim.errors import InputError
 from parsim.output.frames import replacing
 from parsim.state import FIELDS, OF_WATER, Particles
 
@@ -128,7 +129,8 @@ def verify(path):
     except ValueError:
         raise Broken("is too short for a checkpoint") from None
     except OSError as error:
-        raise Broken(f"cannot be read: {error.strerror or error}") from None
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}; make it readable, or move it away to go "
+                         "on from the one before") from None
 
 
 class Checkpoint:
@@ -170,8 +172,15 @@ def _check(name, data):
 
 
 def listed(folder):
-    """Paths of the checkpoints in an output folder, the oldest first."""
-    return sorted(Path(folder, FOLDER).glob(f"*{SUFFIX}"), key=lambda path: (step_of(path), path.name))
+    """Paths of the checkpoints in an output folder, the oldest first. Raises InputError where they cannot be seen."""
+    try:
+        names = os.listdir(Path(folder, FOLDER))
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise InputError(f"{Path(folder, FOLDER)}: cannot be read: {error.strerror or error}") from None
+    paths = (Path(folder, FOLDER, name) for name in names if name.endswith(SUFFIX) and not name.startswith("."))
+    return sorted((path for path in paths if path.is_file()), key=lambda path: (step_of(path), path.name))
 
 
 def step_of(path):

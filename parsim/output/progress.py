@@ -69,10 +69,10 @@ class Progress:
     def step(self, step: int, time: float, dt: float, active: int):
         """Count one step of `active` particles that ended at `time` (simulated s); print when something is due."""
         self.work += active
+        self.last = (step, time, dt)
         now = clock.perf_counter()
         if now < self.due:
             return
-        self.last = (step, time, dt)
         self.samples.append((now, time, self.work))
         self._show()
         if not self.on_terminal:

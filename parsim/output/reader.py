@@ -13,7 +13,7 @@ import numpy as np
 from parsim.errors import InputError
 from parsim.output.frames import read_index
 
-MARKS = ("run.json", "case.toml")
+MARK = "run.json"  # the first file that a run writes
 
 
 def open(folder):  # noqa: A001  (public as parsim.open, like gzip.open or h5py.File)
@@ -22,14 +22,19 @@ def open(folder):  # noqa: A001  (public as parsim.open, like gzip.open or h5py.
     Raises InputError when the folder is not one, naming the nearest that is.
     """
     folder = Path(folder)
-    if not any((folder / mark).is_file() for mark in MARKS):
+    if not is_output(folder):
         raise InputError(_refusal(folder))
     return Run(folder)
 
 
+def is_output(folder):
+    """Whether a run has written the folder."""
+    return (folder / MARK).is_file() or any(folder.glob("checkpoints/*.h5"))
+
+
 def _refusal(folder):
     """Why a folder is no output, and which one was perhaps meant."""
-    reason = "holds neither run.json nor case.toml" if folder.is_dir() else "there is no such folder"
+    reason = f"holds neither {MARK} nor a checkpoint" if folder.is_dir() else "there is no such folder"
     message = f"OUT = {folder}: not an output folder of parsim ({reason})"
     around = [folder, folder.parent, folder.parent.parent]
     found = {str(path.parent): None for place in around if place.is_dir() for path in sorted(place.glob("*/run.json"))}
@@ -59,9 +64,14 @@ class Run:
 
     @cached_property
     def info(self):
-        """What the run says of itself (run.json): status, versions, ranks, steps, phases, rates, warnings."""
-        path = self.folder / "run.json"
-        return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        """What the run says of itself (run.json): status, versions, ranks, steps, phases, rates, warnings.
+
+        Empty where that cannot be read."""
+        try:
+            info = json.loads((self.folder / MARK).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return {}
+        return info if isinstance(info, dict) else {}
 
     @cached_property
     def body_names(self):

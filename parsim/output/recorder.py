@@ -3,6 +3,7 @@
 import json
 import os
 import platform
+import shlex
 import time as clock
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -15,28 +16,18 @@ from parsim.errors import WriteError
 from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
 from parsim.output.measure import Measure
 from parsim.output.progress import Progress
-from parsim.output.series import Table, next_multiple
+from parsim.output.reader import MARK
+from parsim.output.series import TABLES, Table, next_multiple
 
 _FIELDS = {"id": ("i8", ()), "velocity": ("f8", (3,)), "pressure": ("f8", ()), "class": ("u1", ()),
            "density_ratio": ("f8", ())}
 _BODY = ("position", "quaternion", "velocity", "spin", "water_load", "contact_load", "gravity_load")
-TABLES = {
-    "energy": ("kinetic_water potential_water elastic_water kinetic_bodies potential_bodies elastic_contacts "
-               "work_gate dissipated_contacts total", "J"),
-    "counts": ("fluid active all in_walls in_bodies in_gate lost surface volume", "-"),
-    "bodies": ("body x y z q0 q1 q2 q3 u v w spin_x spin_y spin_z", "m, m/s, rad/s"),
-    "loads": ("body kind fx fy fz tx ty tz", "N, N m"),
-    "gauges": ("gauge x y level", "m"),
-    "front": ("x", "m"),
-    "lost": ("id x y z u v w", "m, m/s"),
-}
 
 
 class Recorder:
     """Called by the solver: `begin`, `watch` after every step, at last `finish` or `stopped`.
 
-    As a context manager it tells of failure and gives the folder (`parsim.output.folder`) free. `account`: that of the
-    checkpoint from which the run goes on.
+    As a context manager it tells of failure. `account`: that of the checkpoint from which the run goes on.
     """
 
     def __init__(self, case, folder, name="", account=None):
@@ -53,7 +44,7 @@ class Recorder:
         if not self.main or not self.resumed:
             return []
         try:
-            pieces = json.loads((self.out / "run.json").read_text(encoding="utf-8"))["pieces"]
+            pieces = json.loads((self.out / MARK).read_text(encoding="utf-8"))["pieces"]
         except (OSError, ValueError, KeyError):
             return []
         return [{"ended": "killed"} | piece for piece in pieces]
@@ -68,7 +59,6 @@ class Recorder:
             if self.folder.lock.mine:
                 with suppress(WriteError):  # of a full disk the error in flight tells already
                     self._end("failed", error=f"{kind.__name__}: {error}")
-        self.folder.release()
 
     def begin(self, simulation):
         """Open the tables; write the first rows and frame, unless the run goes on."""
@@ -185,7 +175,7 @@ class Recorder:
 
     def stopped(self, simulation, reason):
         """End a run that has been stopped, with a checkpoint, before its end."""
-        go_on = f"parsim resume {self.out}"
+        go_on = f"parsim resume {shlex.quote(str(self.out))}"
         self._close(f"stopped ({reason})", simulation, reason=reason, go_on=go_on)
         if self.main:
             self.progress.say(f"to go on: {go_on}")
@@ -231,7 +221,7 @@ class Recorder:
         }
 
     def _write_info(self):
-        write_text(self.out / "run.json", json.dumps(self.info, indent=1) + "\n")
+        write_text(self.out / MARK, json.dumps(self.info, indent=1) + "\n")
 
 
 def _now():

@@ -2,12 +2,24 @@
 
 import csv
 import io
+import itertools
 import math
 import os
 from pathlib import Path
 
 from parsim.errors import WriteError
 from parsim.output.frames import write_text
+
+TABLES = {
+    "energy": ("kinetic_water potential_water elastic_water kinetic_bodies potential_bodies elastic_contacts "
+               "work_gate dissipated_contacts total", "J"),
+    "counts": ("fluid active all in_walls in_bodies in_gate lost surface volume", "-"),
+    "bodies": ("body x y z q0 q1 q2 q3 u v w spin_x spin_y spin_z", "m, m/s, rad/s"),
+    "loads": ("body kind fx fy fz tx ty tz", "N, N m"),
+    "gauges": ("gauge x y level", "m"),
+    "front": ("x", "m"),
+    "lost": ("id x y z u v w", "m, m/s"),
+}
 
 
 class Table:
@@ -68,5 +80,8 @@ def _rows_until(path, step):
     """The complete rows of an earlier table up to and with ``step``."""
     if not path.exists():
         return []
-    lines = path.read_text(encoding="utf-8").split("\n")[2:-1]
-    return [line for line in lines if int(line.partition(",")[0]) <= step]
+    lines = path.read_text(encoding="utf-8", errors="replace").split("\n")[2:-1]
+    numbers = (line.partition(",")[0] for line in lines)
+    # a machine that lost its power may have left anything after the rows that a checkpoint has seen on the disk
+    kept = itertools.takewhile(lambda number: number.isdecimal() and int(number) <= step, numbers)
+    return lines[: len(list(kept))]
