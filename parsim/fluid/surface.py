@@ -72,10 +72,10 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
 
     Shifting moves particles but not the evolved n, and diffusion across the surface feeds it: unseen, water at rest
     would swell, 20 deep by 0.05 % a second in 2D and 0.1 % in 3D, 6 deep by 0.8 % and 3 deep by 10 %. So n goes back to
-    the kernel sum, by the share `pull`, where no surface is in the support and no wall within sqrt(near2): beside a wall
-    the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40. Water so thin
-    that it has no such place is pulled where it sees both, and more strongly, to the sum with what the surface has cut
-    off (`packing`), which is 1 to 2 % too low in the rows below it.
+    the kernel sum, by the share `pull`, where no surface is in the support and no wall within sqrt(near2): beside a
+    wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40. Water so
+    thin that it has no such place is pulled where it sees both, and more strongly, to the sum with what the surface has
+    cut off (`packing`), which is 1 to 2 % too low in the rows below it.
     At the surface, where the pressure is zero whatever n is, n stays within the share `loosest` of n0: a drop must not
     come back with another pressure than the flow can have.
     """
