@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from parsim.errors import InputError
@@ -28,6 +28,8 @@ _LAUNCHERS = {
 
 SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)  # that ask a run to stop
 _RAW = ("--output", ":raw")  # of mpirun: show what is no whole line yet
+_ALARMS = (b"exited with non-zero status", b"MPI_ABORT was invoked", b"PMIX ERROR")  # in lines, or between two rules
+_TOLD = (2, 3, 74, 75)  # exit codes whose reason parsim has told
 _HANDED_ON = ("NUMBA_", "OMP_NUM_THREADS", "PARSIM_")
 _PR_SET_PDEATHSIG = 1
 _END = signal.SIGINT  # what ends mpirun at once
@@ -196,12 +198,39 @@ def mpirun(ranks, arguments, stopped=lambda: False):
 
     # in a process group of its own, or a terminal would send SIGINT to mpirun as well
     process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL, process_group=0,
-                               preexec_fn=_as_child)
+                               stderr=subprocess.PIPE, preexec_fn=_as_child)
     with heeding(hand_on):
         if stopped():
             hand_on(signal.SIGUSR1, None)
+        alarms = _pass_on(process.stderr)
         code = process.wait()
+    if code not in _TOLD:
+        _say(alarms)
     return code if code >= 0 else 128 - code
+
+
+def _pass_on(lines):
+    """Print what mpirun says, but for its alarms at the end of ranks, which are returned."""
+    held, alarms = [], b""
+    for line in lines:
+        rule = set(line.strip()) == {ord("-")}
+        if held or rule:
+            held.append(line)
+            if not rule or len(held) == 1:
+                continue
+        text, held = b"".join(held) or line, []
+        if any(words in text for words in _ALARMS):
+            alarms += text
+        else:
+            _say(text)
+    _say(b"".join(held))
+    return alarms
+
+
+def _say(text):
+    with suppress(OSError):
+        sys.stderr.buffer.write(text)
+        sys.stderr.flush()
 
 
 def die_with_parent(number=signal.SIGKILL):

@@ -82,6 +82,14 @@ def test_exit_code_comes_back(code):
     assert launch.mpirun(2, [sys.executable, "-c", f"raise SystemExit({code})"]) == code
 
 
+def test_mpirun_says_nothing_of_exit_codes_that_parsim_tells_of(capfdbinary, monkeypatch, program):
+    monkeypatch.setattr("sys.stderr", open(2, "w", closefd=False))
+    assert launch.mpirun(2, [sys.executable, "-c", "import sys; print('mine', file=sys.stderr); sys.exit(75)"]) == 75
+    assert capfdbinary.readouterr().err.split() in ([b"mine"], [b"mine", b"mine"])
+    assert launch.mpirun(1, [sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]) not in (0, 75)
+    assert b"signal 9" in capfdbinary.readouterr().err, "a killed rank is told"
+
+
 def test_usr1_reaches_the_ranks(program):
     ranks = program(
         "import signal, sys, time\n"
