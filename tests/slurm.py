@@ -8,7 +8,7 @@ import subprocess
 import time
 from pathlib import Path
 
-NODES = ("one", "two")  # what this machine pretends to be
+NODES = tuple(f"{name}-{os.getpid()}" for name in ("one", "two"))  # what this machine pretends to be; nobody else's
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
 _PATH = os.environ["PATH"] + ":/usr/sbin:/sbin"
 _CONFIG = """

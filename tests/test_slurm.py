@@ -144,6 +144,40 @@ def test_a_table_makes_an_array_of_runs(cluster, checkout):
     assert not (checkout / "out-3").exists()
 
 
+def test_a_second_job_for_a_folder_and_another_case_are_refused_for_good(cluster, checkout):
+    job = submit(cluster, checkout, "-n", "1", "-t", "5", "jobs/slurm.sh", "long.toml", "out")
+    wait(lambda: time_of(checkout / "out") > 0.02)
+    words = ["-n", "1", "-t", "5", "--output=second.log", "jobs/slurm.sh"]
+    assert ended(cluster, submit(cluster, checkout, *words, "long.toml", "out"))[::2] == ("FAILED", "2:0")
+    assert "another job writes it" in (checkout / "second.log").read_text()
+    cluster.run("scancel", job)
+    assert ended(cluster, job)[0] == "CANCELLED"
+    assert ended(cluster, submit(cluster, checkout, *words, "survive.toml", "out"))[::2] == ("FAILED", "2:0")
+    assert "is the run of another case, which differs in output.frames" in (checkout / "second.log").read_text()
+
+
+def test_a_copy_of_the_script_and_an_empty_environment_do(cluster, checkout, tmp_path):
+    mine = tmp_path / "mine.sh"
+    shutil.copy(ROOT / "jobs" / "slurm.sh", mine)
+    words = ["-N", "2", "-n", "2", "-t", "5"]
+    elsewhere = submit(cluster, checkout, *words, f"--chdir={tmp_path}", mine, "survive.toml")
+    assert ended(cluster, elsewhere)[::2] == ("FAILED", "2:0")
+    assert "export PARSIM=/path/to/checkout" in (tmp_path / "job.log").read_text()
+    cache = os.environ["NUMBA_CACHE_DIR"]
+    words.append(f"--export=PARSIM={checkout},NUMBA_CACHE_DIR={cache},SLURM_CONF={cluster.environment['SLURM_CONF']}")
+    (checkout / "short.toml").write_text('extends = "survive.toml"\n[run]\nuntil = 0.01\n')
+    state = ended(cluster, submit(cluster, checkout, *words, mine, "short.toml", "out"))
+    assert state[0] == "COMPLETED", (checkout / "job.log").read_text()
+
+
+def test_what_would_not_be_meant_is_refused(cluster, checkout):
+    for words, said in ((["--array=1-2"], "an array job needs a table"), (["-N", "2"], "give the number of ranks, -n")):
+        job = submit(cluster, checkout, "-t", "5", *words, "jobs/slurm.sh", "survive.toml", "out")
+        assert ended(cluster, f"{job}_1" if "--array=1-2" in words else job)[::2] == ("FAILED", "2:0")
+        assert said in (checkout / "job.log").read_text()
+    assert not (checkout / "out").exists()
+
+
 def test_a_checkout_without_an_environment_is_told(cluster, checkout):
     shutil.rmtree(checkout / ".venv")
     state, _, code = ended(cluster, submit(cluster, checkout, "jobs/slurm.sh", "long.toml"))
@@ -210,6 +244,7 @@ def test_pbs_starts_then_goes_on_and_submits_what_is_left(pbs):
     code, calls, _ = pbs(0, CASE="long.toml", OUT="out")
     assert code == 0 and calls == ["-P -m parsim resume out --case long.toml -n 4 --walltime 0:4800"]
     assert len(pbs(75, CASE="long.toml", OUT="out", FAKE_CHECKPOINT="no")[1]) == 1
+    assert len(pbs(74, CASE="long.toml", OUT="out", FAKE_STATUS="running")[1]) == 1
 
 
 @pytest.mark.parametrize("code", [1, 2, 74])

@@ -7,7 +7,6 @@ import numpy as np
 from parsim.jit import kernel, prange, rows
 from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
 
-_CUT = 1.1  # what a flat surface cuts off the kernel sum, over the sum of directions that it leaves: 1 to 1.3 below it
 _SQUEEZED = 2.5  # times the pull in deep water
 
 
@@ -46,8 +45,8 @@ def classify(at, start, end, index, x, y, z, c, spacing, lowest, highest, surfac
 
 
 @kernel
-def packing(i, start, middle, end, index, x, y, z, scale, radius):
-    """Kernel sum of particle i, and an estimate of what a free surface has cut off of it."""
+def packing(i, start, middle, end, index, x, y, z, scale, radius, cut):
+    """Kernel sum of particle i, and an estimate of what a free surface has cut off of it; cut: see `Lattice`."""
     s, mx, my, mz = 0.0, 0.0, 0.0, 0.0
     for t in range(np.uint64(start), np.uint64(end)):
         j = index[t]
@@ -58,11 +57,11 @@ def packing(i, start, middle, end, index, x, y, z, scale, radius):
         mx += wt * inverse * dx
         my += wt * inverse * dy
         mz += wt * inverse * dz
-    return s + _CUT * math.sqrt(mx * mx + my * my + mz * mz)
+    return s + cut * math.sqrt(mx * mx + my * my + mz * mz)
 
 
 @rows
-def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, radius, near2, factor, longest, n0, pull,
+def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, radius, near2, factor, longest, n0, cut, pull,
           loosest, ax, ay, az, surface, n):
     """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
 
@@ -113,7 +112,7 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
             if not seen and not beside:
                 n[i] += pull * (n0 * c[i] - n[i])
             elif seen and beside:
-                whole = packing(i, start[i], middle[i], end[i], index, x, y, z, scale, radius)
+                whole = packing(i, start[i], middle[i], end[i], index, x, y, z, scale, radius, cut)
                 n[i] += _SQUEEZED * pull * (whole - n[i])
         if surface[i] != INTERNAL:
             length2 = mx * mx + my * my + mz * mz

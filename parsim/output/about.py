@@ -10,8 +10,9 @@ def main(out):
     told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}
     if told.get("status") == "running" and not held(out):
         told["status"] = "killed, or lost with its machine; `parsim resume` goes on"
-    told["pieces"] = "; ".join(f"from step {piece['from_step']} on {piece['ranks']} ranks: {piece.get('ended', '')}"
-                               for piece in found.info.get("pieces", ()))
+    unended = "running" if told.get("status") == "running" else "killed"
+    told["pieces"] = "; ".join(f"from step {piece['from_step']} on {piece['ranks']} ranks: "
+                               f"{piece.get('ended', unended)}" for piece in found.info.get("pieces", ()))
     told |= {key: _flat(value) for key, value in found.info.items()
              if value and key != "pieces" and isinstance(value, dict | list)}
     frames = found.times("water")
@@ -23,4 +24,7 @@ def main(out):
 
 def _flat(value):
     """A table or list on one line."""
-    return "; ".join(f"{key} {value[key]}" for key in value) if isinstance(value, dict) else "; ".join(map(str, value))
+    if not isinstance(value, dict):
+        return "; ".join(map(str, value))
+    return "; ".join(f"{key} {number:.4g}" if isinstance(number, float) else f"{key} {number}"
+                     for key, number in value.items())

@@ -111,7 +111,8 @@ class Progress:
         (wall0, time0, work0), (wall1, time1, work1) = self.samples[0], self.samples[-1]
         step, time, dt = self.last
         speed = (time1 - time0) / (wall1 - wall0)
-        left = duration((self.until - time) / speed) if speed > 0 else "?"
+        started = len(self.samples) > 1 and self.samples[0][0] > self.began  # the first step is slower than any other
+        left = duration((self.until - time) / speed) if speed > 0 and started else "?"
         rate = quantity((work1 - work0) / (wall1 - wall0))
         return [
             f"t = {time:.4f} of {self.until:g} s",
