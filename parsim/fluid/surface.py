@@ -61,8 +61,8 @@ def packing(i, start, middle, end, index, x, y, z, scale, radius, cut):
 
 
 @rows
-def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, radius, near2, factor, longest, n0, cut, pull,
-          loosest, ax, ay, az, surface, n):
+def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, radius, near2, factor, longest, n0, cut,
+          pull, loosest, ax, ay, az, surface, n):
     """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
 
     Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
