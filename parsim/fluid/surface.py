@@ -7,6 +7,7 @@ import numpy as np
 from parsim.jit import kernel, prange, rows
 from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
 
+_OPPOSITE2 = 0.92  # squared cosine of the widest angle between the ways to a wall below a surface and away from that
 _SQUEEZED = 2.5  # times the pull in deep water
 
 
@@ -61,8 +62,8 @@ def packing(i, start, middle, end, index, x, y, z, scale, radius, cut):
 
 
 @rows
-def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, radius, near2, factor, longest, n0, cut,
-          pull, loosest, ax, ay, az, surface, n):
+def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, near, radius, near2, factor, longest, n0,
+          cut, pull, loosest, ax, ay, az, surface, n):
     """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
 
     Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
@@ -71,10 +72,10 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
 
     Shifting moves particles but not the evolved n, and diffusion across the surface feeds it: unseen, water at rest
     would swell, 20 deep by 0.05 % a second in 2D and 0.1 % in 3D, 6 deep by 0.8 % and 3 deep by 10 %. So n goes back to
-    the kernel sum, by the share `pull`, where no surface is in the support and no wall within sqrt(near2): beside a
-    wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40. Water so
-    thin that it has no such place is pulled where it sees both, and more strongly, to the sum with what the surface has
-    cut off (`packing`), which is 1 to 2 % too low in the rows below it.
+    the kernel sum, by the share `pull`, where no surface or body is in the support and no wall within sqrt(near2):
+    beside a wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40.
+    Water so thin that it has no such place is pulled where it sees a wall opposite the surface, and more strongly, to
+    the sum with what the surface has cut off (`packing`), which is 1 to 2 % too low in the rows below it.
     At the surface, where the pressure is zero whatever n is, n stays within the share `loosest` of n0: a drop must not
     come back with another pressure than the flow can have.
     """
@@ -102,12 +103,16 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, near, ra
                     my += ny[j] * wt
                     mz += nz[j] * wt
         if inside:
-            t, beside = middle[i], False
-            limit2 = radius * radius if seen else near2
+            t, beside, m2 = middle[i], False, mx * mx + my * my + mz * mz
             while not beside and t < end[i]:
                 j = index[t]
                 dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
-                beside = dx * dx + dy * dy + dz * dz < limit2
+                r2 = dx * dx + dy * dy + dz * dz
+                if seen:  # a wall opposite the surface
+                    along = dx * mx + dy * my + dz * mz
+                    beside = r2 < radius * radius and along < 0.0 and along * along > _OPPOSITE2 * r2 * m2
+                else:
+                    beside = r2 < (near2 if body[j] < 0 else radius * radius)
                 t += 1
             if not seen and not beside:
                 n[i] += pull * (n0 * c[i] - n[i])
