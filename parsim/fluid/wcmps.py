@@ -121,8 +121,8 @@ class WCMPS:
         factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
         surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
                       p.scale, p.body, domain.near(SURFACE, "surface"), lattice.radius,
-                      (_VICINITY * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number, lattice.cut, self.recovery * dt,
-                      self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
+                      (_VICINITY * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,
+                      lattice.cut, self.recovery * dt, self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
         kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
