@@ -121,6 +121,7 @@ class Comm:
                 error = refusal
         result, error = self.share((result, error))
         if error is not None:
+            error.shared = True
             raise error
         return result
 

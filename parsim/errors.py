@@ -17,10 +17,10 @@ class RunError(Exception):
 
 
 class WriteError(Exception):
-    """A file or folder that cannot be written. Exit code 74."""
+    """A file or folder that cannot be written. Exit code 74. `shared`: raised on all ranks, for rank 0 to tell of it."""
 
-    def __init__(self, path, reason):
-        self.path, self.reason = path, reason
+    def __init__(self, path, reason, shared=False):
+        self.path, self.reason, self.shared = path, reason, shared
         super().__init__(path, reason)  # so that it can be sent from rank to rank
 
     def __str__(self):

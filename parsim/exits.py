@@ -25,7 +25,7 @@ def code_of(work):
             print(f"error: {error}", file=sys.stderr, flush=True)
         return _together(FAILED)
     except WriteError as error:
-        if rank == 0:
+        if rank == 0 or not error.shared:
             print(f"error: {error}", file=sys.stderr, flush=True)
         return _together(CANNOT_WRITE)
     except KeyboardInterrupt:
