@@ -17,7 +17,7 @@ class RunError(Exception):
 
 
 class WriteError(Exception):
-    """A file or folder that cannot be written. Exit code 74. `shared`: raised on all ranks, for rank 0 to tell of it."""
+    """A file or folder that cannot be written. Exit code 74. `shared`: raised on all ranks; rank 0 tells of it."""
 
     def __init__(self, path, reason, shared=False):
         self.path, self.reason, self.shared = path, reason, shared
