@@ -135,7 +135,7 @@ def disturbed(tmp_path, started):
 
 @pytest.mark.parametrize(("how", "rank", "said"), [
     ("sleeps", 1, "rank 1 of 3 has made no progress for 5 s"),
-    ("stops", 0, "rank 0 of 3 has made no progress for 5 s"),
+    pytest.param("stops", 0, "rank 0 of 3 has made no progress for 5 s", marks=pytest.mark.slow),
     pytest.param("waits", 1, "has waited 15 s for a message", marks=pytest.mark.slow),
     ("raises", 1, "broken on purpose"),
     ("dies", 2, "rank 2"),
@@ -172,7 +172,7 @@ def test_a_killed_parsim_takes_its_ranks_along(tmp_path, started):
     assert job.end() == -jobs.KILL and gone(job)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_a_closed_terminal_stops_the_run_in_good_order(tmp_path, ranks):
     out, (ours, theirs) = tmp_path / "out", pty.openpty()
     line = [sys.executable, "-m", "parsim", "run", CASE, "-o", out, "-n", str(ranks)]
@@ -249,7 +249,7 @@ program()
 
 
 @pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.slow), 2])
-@pytest.mark.parametrize("victim", ["frames", "checkpoints"])
+@pytest.mark.parametrize("victim", [pytest.param("frames", marks=pytest.mark.slow), "checkpoints"])
 def test_a_disk_that_fills_up_in_the_middle_of_a_file(small_disk, tmp_path, started, capsys, victim, ranks):
     out, code = small_disk / "out", tmp_path / "fills.py"
     code.write_text(FILLS)

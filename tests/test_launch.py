@@ -97,7 +97,8 @@ def test_usr1_reaches_the_ranks(program):
         "print('ready', flush=True)\n"
         "time.sleep(30)\n"
     )
-    line = f"import sys; from parsim import launch; sys.exit(launch.mpirun(2, [sys.executable, {str(ranks)!r}]))"
+    line = (f"import sys; from parsim import launch; launch._STARTING = 0.5; "
+            f"sys.exit(launch.mpirun(2, [sys.executable, {str(ranks)!r}]))")
     with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
         assert [job.stdout.readline() for _ in range(2)] == ["ready\n", "ready\n"]
         job.send_signal(signal.SIGUSR1)
@@ -138,7 +139,8 @@ def test_mpirun_does_not_hear_what_a_scheduler_sends_to_all(program):
         "print(os.getppid(), flush=True)\n"
         "time.sleep(30)\n"
     )
-    line = f"import sys; from parsim import launch; sys.exit(launch.mpirun(1, [sys.executable, {str(ranks)!r}]))"
+    line = (f"import sys; from parsim import launch; launch._STARTING = 0.5; "
+            f"sys.exit(launch.mpirun(1, [sys.executable, {str(ranks)!r}]))")
     with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
         os.kill(int(job.stdout.readline()), signal.SIGTERM)
         with pytest.raises(subprocess.TimeoutExpired):

@@ -186,6 +186,7 @@ def test_a_two_dimensional_run_and_a_stopped_one(run, tmp_path):
     case.write_text(case.read_text().replace("dimensions = 3", "dimensions = 2"))
     check_page(build(tmp_path / "plane"), figures=10)
     (tmp_path / "stopped/series").mkdir(parents=True)
+    (tmp_path / "stopped/run.json").write_text("{}")
     (tmp_path / "stopped/case.toml").write_text('title = "Stopped"\n')
     (tmp_path / "stopped/series/energy.csv").write_text("# units: -, s, J\nstep,time,total\n")
     assert "Status: unknown" in check_page(build(tmp_path / "stopped"), figures=0)
@@ -204,7 +205,7 @@ def test_a_gif_replaces_a_missing_encoder(run, monkeypatch):
 def test_bad_folders_and_full_ones(tmp_path, run):
     with pytest.raises(InputError, match="not an output folder"):
         build(tmp_path)
-    (tmp_path / "case.toml").write_text('title = "x"\n')
+    (tmp_path / "run.json").write_text("{}")
     (tmp_path / "report").write_text("")
     with pytest.raises(WriteError):
         build(tmp_path)

@@ -158,6 +158,7 @@ def test_a_walltime_that_is_none_is_refused(text):
 
 
 def test_a_signal_before_the_launcher_listens_is_not_lost(monkeypatch):
+    monkeypatch.setattr(launch, "_STARTING", 0.5)
     heard = iter([True])
     assert launch.mpirun(1, ["sleep", "30"], lambda: next(heard)) == 128 + 10
 

@@ -32,6 +32,7 @@ def one_rank(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cold"))
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
