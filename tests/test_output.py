@@ -148,7 +148,7 @@ def test_series_keep_every_bit_and_a_torn_row_is_not_read(tmp_path):
     table.close()
     with (tmp_path / "series/energy.csv").open("a") as file:
         file.write("52,0.12")
-    (tmp_path / "case.toml").write_text("")
+    (tmp_path / "run.json").write_text("{}")
     read = parsim.open(tmp_path).series("energy")
     assert not compare.different(read["value"], np.array([*values, np.nan, -0.0])).any()
     assert len(read["step"]) == 52
@@ -231,6 +231,6 @@ def test_ulps_count_the_floats_between(a, b, distance):
 
 
 def test_comparing_nothing_is_refused(written, tmp_path):
-    (tmp_path / "case.toml").write_text("")
+    (tmp_path / "run.json").write_text("{}")
     with pytest.raises(InputError, match="nothing to compare"):
         compare.main(tmp_path, written)
