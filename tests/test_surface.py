@@ -44,7 +44,7 @@ def test_shifting_never_moves_water_out_through_the_surface(slab):
     p.ax[:], p.ay[:], p.az[:] = 0.3, 0.0, -1.0  # a concentration that falls upward, as at any free surface
     surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
                   p.c, p.scale, p.body, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01,
-                  scheme.number, scheme.cut, 0.1, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
+                  scheme.number, scheme.cut, 0.0, 0.0, -1.0, 0.1, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
     at, z = near.fluid, p.z[near.fluid]
     assert p.az[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(0.0, abs=1e-12)
     assert p.ax[at[np.abs(z - 0.55) < 0.01]] == pytest.approx(-0.0012)
@@ -60,7 +60,7 @@ def shifted_density(domain, near, scheme, pull):
     p.n[:], p.ax[:], p.ay[:], p.az[:] = 1.01 * scheme.number, 0.0, 0.0, 0.0
     surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
                   p.c, p.scale, p.body, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01,
-                  scheme.number, scheme.cut, pull, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
+                  scheme.number, scheme.cut, 0.0, 0.0, -1.0, pull, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
     return p.n[near.fluid] / scheme.number
 
 
@@ -110,6 +110,6 @@ def test_shifts_are_cut_to_their_longest(slab):
     p.ax[:], p.ay[:], p.az[:] = 30.0, 40.0, 0.0
     surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
                   p.c, p.scale, p.body, domain.near(SURFACE, "surface"), scheme.radius, 0.21**2, 0.004, 0.01,
-                  scheme.number, scheme.cut, 0.1, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
+                  scheme.number, scheme.cut, 0.0, 0.0, -1.0, 0.1, 0.005, p.ax, p.ay, p.az, p.surface, p.n)
     moved = np.sqrt(p.ax**2 + p.ay**2 + p.az**2)[near.fluid]
     assert moved.max() == pytest.approx(0.01) and (p.kind[near.fluid] == FLUID).all()

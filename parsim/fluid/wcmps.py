@@ -37,6 +37,7 @@ class WCMPS:
         self.loosest = 0.5 / water.sound**2  # the stagnation pressure of the largest expected speed
         self.recovery = water.recovery * case.speed / case.depth if case.depth else 0.0
         self.restitution = water.restitution
+        self._down = np.array(case.gravity) / (math.hypot(*case.gravity) or 1.0)
         self.close2 = (water.collision_distance * case.spacing) ** 2
 
     def time_step(self, speed):
@@ -122,7 +123,7 @@ class WCMPS:
         surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
                       p.scale, p.body, domain.near(SURFACE, "surface"), lattice.radius,
                       (_VICINITY * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,
-                      lattice.cut, self.recovery * dt, self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
+                      lattice.cut, *self._down, self.recovery * dt, self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
         kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
