@@ -63,7 +63,7 @@ def packing(i, start, middle, end, index, x, y, z, scale, radius, cut):
 
 @rows
 def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, near, radius, near2, factor, longest, n0,
-          cut, hx, hy, hz, pull, loosest, ax, ay, az, surface, n):
+          lost, hx, hy, hz, pull, loosest, ax, ay, az, surface, n):
     """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
 
     Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
@@ -75,8 +75,9 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, ne
     the kernel sum, by the share `pull`, where no surface or body is in the support and no wall within sqrt(near2):
     beside a wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40.
     Water so thin that it has no such place is pulled where it sees the surface and a bed straight below, along the unit
-    vector h, and more strongly, to the sum with what the surface has cut off (`packing`), which is 1 to 2 % too low in
-    the rows below it. Under the waterline of other walls that would take 0.1 % off the level of a narrow tank.
+    vector h, and more strongly, to the sum with what the surface has cut off (`packing`; lost is `Lattice.cut`), which
+    is 1 to 2 % too low in the rows below it. Under the waterline of other walls that would take 0.1 % off the level of
+    a narrow tank.
     At the surface, where the pressure is zero whatever n is, n stays within the share `loosest` of n0: a drop must not
     come back with another pressure than the flow can have.
     """
@@ -118,7 +119,7 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, ne
             if not seen and not beside:
                 n[i] += pull * (n0 * c[i] - n[i])
             elif seen and beside:
-                whole = packing(i, start[i], middle[i], end[i], index, x, y, z, scale, radius, cut)
+                whole = packing(i, start[i], middle[i], end[i], index, x, y, z, scale, radius, lost)
                 n[i] += _SQUEEZED * pull * (whole - n[i])
         if surface[i] != INTERNAL:
             length2 = mx * mx + my * my + mz * mz
