@@ -61,12 +61,25 @@ class Box(Table):
         return tuple(high - low for low, high in zip(self.min, self.max, strict=True))
 
 
+class Profile(Table):
+    """How the velocity of a fill varies over its depth: as a share of its mean."""
+
+    kind: Literal["linear", "log", "table"] = Field(description="linear, logarithmic, or a table of shares by height")
+    bottom: Annotated[Real, Field(ge=0, le=2)] = Field(
+        0.0, description="linear: share at the bottom; at the top it is 2 less this"
+    )
+    roughness: Moderate | None = Field(None, description="log: roughness ks of the bed, m; u ~ ln(30 z / ks)")
+    heights: tuple[Number, ...] = Field((), description="table: heights above the bottom of the fill, m, ascending")
+    shares: tuple[Number, ...] = Field((), description="table: shares of the mean at these heights")
+
+
 class Fill(Table):
     """A box of water at the start; bodies and the gate are cut out of it."""
 
     min: Vector = Field(description="lowest corner, m")
     max: Vector = Field(description="highest corner, m; its z is the water level, floating bodies included")
-    velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity at the start, m/s")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity at t = 0, m/s; of a profile its mean")
+    profile: Profile | None = Field(None, description="how the velocity varies over the depth; left out: not at all")
 
 
 class Water(Table):
@@ -79,16 +92,22 @@ class Water(Table):
         None, description="largest expected speed, m/s; left out: 2 sqrt(g H), H the greatest depth of the fill"
     )
     sound: Real = Field(10.0, ge=5, le=1000, description="speed of sound over the largest expected speed")
+    weight: Literal["wendland_c4", "wendland_c2", "mps"] = Field(
+        "wendland_c4", description="weight of the sums over neighbours; mps is re / r - 1"
+    )
     support: Real = Field(3.1, ge=2.1, le=4, description="radius of the support over the spacing")
     diffusion: Share = Field(0.5, description="diffusion of density, delta")
-    damping_viscosity: Share = Field(
-        0.01, description="alpha: the viscosity is at least alpha c0 l0, c0 the speed of sound, l0 the spacing"
+    noise_damping: Annotated[Real, Field(ge=0, le=0.005)] = Field(
+        0.0001, description="damping of what changes from particle to particle: a biharmonic viscosity over c0 l0^3"
     )
-    restitution: Share = Field(0.5, description="restitution of water particles that come too close")
-    collision_distance: Share = Field(0.9, description="distance of particles that come too close, over the spacing")
+    restitution: Share = Field(0.5, description="restitution of water that comes too close to walls and bodies")
+    collision_distance: Share = Field(0.9, description="distance of water that comes too close, over the spacing")
     shifting: Switch = Field(True, description="whether particles are shifted to keep them evenly spread")
     recovery: Share = Field(
-        0.1, description="rate at which shifted water takes the density of its arrangement, over speed / depth"
+        0.1, description="rate at which shifted water takes the density of its arrangement, over 2 sqrt(g / depth)"
+    )
+    disorder: Annotated[Real, Field(ge=0, le=0.5)] = Field(
+        0.0, description="how far particles are off the lattice at the start, at most, over the spacing"
     )
     pressure: Literal["hydrostatic", "zero"] = Field("hydrostatic", description="pressure at the start")
     fill: tuple[Fill, ...] = Field((), description="boxes of water at the start")

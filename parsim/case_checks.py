@@ -5,6 +5,7 @@ from fractions import Fraction
 
 from parsim import case_bodies as bodies
 from parsim import case_geometry as geometry
+from parsim.case_messages import short
 from parsim.errors import InputError
 
 
@@ -133,7 +134,7 @@ def _faces(case):
 def _fill(case):
     faults = []
     for i, fill in enumerate(case.water.fill):
-        faults += [f"water.fill.{i}.{text}" for text in _fill_faults(case, fill)]
+        faults += [f"water.fill.{i}.{text}" for text in (*_fill_faults(case, fill), *_profile_faults(fill))]
     faults += _fill_overlaps(case.water.fill)
     return faults
 
@@ -148,6 +149,29 @@ def _fill_faults(case, fill):
                 yield f"{key} = {list(getattr(fill, key))}: {name} is outside the box, {low[axis]!r} to {high[axis]!r}"
     if case.dimensions == 2 and (fill.min[1], fill.max[1]) != (0.0, 1.0):
         yield f"min, max: y = {fill.min[1]!r} to {fill.max[1]!r}: must be 0 to 1 in a 2D case"
+
+
+def _profile_faults(fill):
+    """What a profile lacks, or has too much of, for its kind."""
+    profile, depth = fill.profile, fill.max[2] - fill.min[2]
+    if profile is None:
+        return
+    if profile.kind == "log" and profile.roughness is None:
+        yield 'profile.roughness: missing; required for kind = "log"'
+    elif profile.kind == "log" and not profile.roughness < 10.0 * depth:
+        limit = f"{10.0 * depth:.6g} m"
+        yield f"profile.roughness = {profile.roughness!r}: must be less than ten depths of the fill, {limit}"
+    if profile.kind == "table":
+        ascending = all(low < high for low, high in zip(profile.heights, profile.heights[1:], strict=False))
+        if len(profile.heights) < 2 or not ascending:
+            yield f"profile.heights = {short(list(profile.heights))}: must be two or more, ascending"
+        if len(profile.shares) != len(profile.heights):
+            yield f"profile.shares: {len(profile.shares)} entries for {len(profile.heights)} heights; must be as many"
+    used = {"linear": {"bottom"}, "log": {"roughness"}, "table": {"heights", "shares"}}[profile.kind]
+    given = [key for key, field in type(profile).model_fields.items() if getattr(profile, key) != field.default]
+    for key in given:
+        if key not in used | {"kind"}:
+            yield f'profile.{key}: not used by kind = "{profile.kind}"; allowed with it: {", ".join(sorted(used))}'
 
 
 def _fill_overlaps(fills):

@@ -1,5 +1,7 @@
 """Kernels of what is watched in a run: energies, particles where none may be, front, water levels."""
 
+import math
+
 import numpy as np
 
 from parsim.jit import kernel
@@ -10,7 +12,8 @@ from parsim.state import DETACHED, SURFACE
 def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
     """Kinetic, potential and elastic energy, J, and mass, kg, of each fluid particle `at`: rows of out (n, 4).
 
-    Elastic: the integral of p / rho^2 over rho of the state, c0^2 / 7 (s^6 / 6 + 1 / s - 7 / 6), s = n / n0.
+    Elastic: what the pair forces put into n, the integral of p / (rho0 s) over s = n / n0 of the state,
+    c0^2 / 7 ((s^7 - 1) / 7 - ln s).
     """
     for row in range(at.size):
         i = at[row]
@@ -18,7 +21,7 @@ def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
         s2 = s * s
         out[row, 0] = 0.5 * mass * (u[i] * u[i] + v[i] * v[i] + w[i] * w[i])
         out[row, 1] = -mass * (gx * x[i] + gy * y[i] + gz * z[i])
-        out[row, 2] = mass * sound2 / 7.0 * (s2 * s2 * s2 / 6.0 + 1.0 / s - 7.0 / 6.0)
+        out[row, 2] = mass * sound2 / 7.0 * ((s2 * s2 * s2 * s - 1.0) / 7.0 - math.log(s))
         out[row, 3] = mass
 
 

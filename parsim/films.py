@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from parsim.fluid.weights.choice import weight_at
 from parsim.jit import kernel
 from parsim.solid.rotation import matrices, to_body, to_global
 from parsim.state import BODY
@@ -29,9 +30,9 @@ class Films:
 
     def __init__(self, case, bodies, samples, lattice):
         self.bodies, self.samples = bodies, samples
-        self._spacing, self._radius = case.spacing, lattice.radius
+        self._spacing, self._weight = case.spacing, lattice.weight
         self._head = case.water.density * np.array(case.gravity)
-        self._layer, self._deep = _layers(case)
+        self._layer, self._deep = _layers(lattice)
         self._planes = _planes(case)
         self._period = case.box.size[0] if case.box.faces.x_min == "periodic" else math.inf
         self._axes = case.axes
@@ -88,7 +89,7 @@ class Films:
         patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
                     self.samples.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position,
                     matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period, self._planes,
-                    plate, self._head, b.film, self._spacing, self._radius, self._layer, self._deep, load, wet,
+                    plate, self._head, b.film, self._spacing, self._weight, self._layer, self._deep, load, wet,
                     dry, heads)
         body = self.samples.body[self.sample[here]].astype(np.int64)
         return np.concatenate([load, wet, dry, heads]), np.concatenate([body + k * len(b) for k in range(4)])
@@ -102,18 +103,11 @@ class Films:
         self.bodies.film[:, 1:] = np.where(rim > 0.0, wet / np.maximum(rim, 1e-300), fed[:, None])
 
 
-def _layers(case):
+def _layers(lattice):
     """Sums of W over the first layer of a lattice, one spacing ahead, and of W d / r2 over all layers, in spacings."""
-    support = case.water.support
-    reach = range(-math.ceil(support), math.ceil(support) + 1)
-    across = list(itertools.product(reach, reach) if case.dimensions == 3 else ((i, 0) for i in reach))
-    first, every = 0.0, 0.0
-    for d, (i, j) in itertools.product(range(1, math.ceil(support)), across):
-        r2 = d * d + i * i + j * j
-        weight = max(support / math.sqrt(r2) - 1.0, 0.0)
-        first += weight if d == 1 else 0.0
-        every += weight * d / r2
-    return first, every
+    points = [(w, r, up / lattice.spacing) for w, _, r, up in lattice.points() if up > 0.5 * lattice.spacing]
+    first = math.fsum(w for w, _, up in points if up < 1.5)
+    return first, math.fsum(w * up * (lattice.spacing / r) ** 2 for w, r, up in points)
 
 
 def _planes(case):
@@ -170,7 +164,7 @@ def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, sp
 
 
 @kernel
-def water_at(i, x, n, start, middle, index, px, py, pz, radius):
+def water_at(i, x, n, start, middle, index, px, py, pz, weight):
     """Sums of sample i: W over all the water it sees; W d / r2 over that before its face, at x with normal n, d ahead.
 
     The second is what the water pushes with: one layer does 81 % of what deep water does, the film the rest.
@@ -180,16 +174,16 @@ def water_at(i, x, n, start, middle, index, px, py, pz, radius):
         j = index[c]
         dx, dy, dz = px[j] - px[i], py[j] - py[i], pz[j] - pz[i]
         r2 = dx * dx + dy * dy + dz * dz
-        weight = max(radius / math.sqrt(r2) - 1.0, 0.0)
-        every += weight
+        wt, slope, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+        every += wt
         if (px[j] - x[0]) * n[0] + (py[j] - x[1]) * n[1] + (pz[j] - x[2]) * n[2] > 0.0:
-            ahead += weight / r2 * (dx * n[0] + dy * n[1] + dz * n[2])
+            ahead += slope * (dx * n[0] + dy * n[1] + dz * n[2])
     return every, ahead
 
 
 @kernel
 def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start, middle, index, px, py, pz, pressure,
-                centre, turn, half, first, others, period, planes, gate, head, film, spacing, radius, layer, deep, load,
+                centre, turn, half, first, others, period, planes, gate, head, film, spacing, weight, layer, deep, load,
                 wet, dry, heads):
     """Load of the film on each patch `here`, and what its rim tells of the water: see `Films.loads`."""
     for k in range(here.size):
@@ -203,7 +197,7 @@ def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start
         i = row[s]
         every, ahead = 0.0, 0.0
         if i >= 0:
-            every, ahead = water_at(i, x, n, start, middle, index, px, py, pz, radius)
+            every, ahead = water_at(i, x, n, start, middle, index, px, py, pz, weight)
             ahead *= spacing / deep
         value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
         if on_rim[m]:

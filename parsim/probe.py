@@ -34,7 +34,7 @@ def _seconds():
     """Least seconds of one call of the continuity sweep, compiled without threads, on a lattice."""
     import numpy as np
 
-    from parsim.fluid import kernels
+    from parsim.fluid import kernels, weights
     from parsim.jit import FAST, njit
 
     axis = np.arange(_EDGE, dtype=float)
@@ -48,9 +48,9 @@ def _seconds():
     start, end = np.zeros(x.size, np.int64), np.zeros(x.size, np.int64)
     start[at] = np.arange(at.size) * step.size
     end[at] = start[at] + step.size
-    u, v, w, n, c, scale = np.random.default_rng(1).uniform(1.0, 2.0, (6, x.size))
-    arguments = (at, start, end, end, index, x, y, z, u, v, w, n, c, scale, 3.1, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0,
-                 *np.zeros((4, x.size)))
+    fields = np.random.default_rng(1).uniform(1.0, 2.0, (8, x.size))
+    arguments = (at, start, end, end, index, x, y, z, *fields, weights.WEIGHTS["wendland_c4"].of_radius(3.1), 1.0, 1.0,
+                 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, *np.zeros((7, x.size)))
     sweep = njit(kernels.continuity.py_func, error_model="numpy", nogil=True, fastmath=FAST)
     times = []
     for _ in range(_CALLS):

@@ -13,7 +13,7 @@ from parsim.errors import InputError
 from parsim.films import Films
 from parsim.fluid.wcmps import WCMPS
 from parsim.neighbours import Neighbours
-from parsim.shapes import Lattice, taken_by_bodies
+from parsim.shapes import Lattice, disordered, taken_by_bodies
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
 from parsim.state import FLUID, Particles, make_id
@@ -78,9 +78,10 @@ def columns(case):
 
 
 def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
-    """The water at the start, with the velocity of its fill and in pressure balance: the particles at `here`(x), bool.
+    """The water at the start, in pressure balance: the particles at `here`(x), bool.
 
-    Ids count the points of all fills, so that they are the same for any slab.
+    Ids count the points of all fills, so that they are the same for any slab. Velocities are those of the fills, but
+    for water that settles first: see `flow`.
     """
     parts, number = [], 0
     for fill in case.water.fill:
@@ -91,16 +92,50 @@ def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
             open_water &= (x < case.gate.min_x) | (x > case.gate.max_x)
         mine = points.within(open_water, np.ones(y.size, bool), np.ones(z.size, bool))
         mine = mine[~np.isin(mine, taken_by_bodies(points, case, bodies))]
-        parts.append(_particles(case, scheme, fill, points.points(mine), number + mine))
+        place = disordered(points, mine, number, case.water.disorder, case.axes)
+        parts.append(_particles(case, scheme, fill, place, number + mine))
         number += points.size
-    return Particles.join(parts) if parts else Particles()
+    fluid = Particles.join(parts) if parts else Particles()
+    if case.start >= 0.0:
+        flow(case, fluid)
+    return fluid
 
 
 def _particles(case, scheme, fill, points, idents):
     depth = (fill.max[2] - points[:, 2]) if case.water.pressure == "hydrostatic" else np.zeros(len(points))
     pressure = case.water.density * -case.gravity[2] * depth
-    u, v, w = fill.velocity
     return Particles(
         len(points), id=make_id(FLUID, idents), kind=FLUID, x=points[:, 0], y=points[:, 1], z=points[:, 2],
-        u=u, v=v, w=w, n=scheme.number_at(pressure),
+        n=scheme.number_at(pressure),
     )
+
+
+def flow(case, p):
+    """Give the fluid among the particles `p` the velocity of the fill it is from, at the height where it is."""
+    first = 0
+    for fill in case.water.fill:
+        last = first + Lattice(fill.min, fill.max, case.spacing, case.axes).size
+        at = np.flatnonzero((p.kind == FLUID) & (p.id >= make_id(FLUID, first)) & (p.id < make_id(FLUID, last)))
+        first = last
+        if not any(fill.velocity):  # water at rest keeps what motion is left in it
+            continue
+        share = profile_shares(fill, p.z[at])
+        for name, speed in zip(("u", "v", "w"), fill.velocity, strict=True):
+            getattr(p, name)[at] = speed * share
+
+
+def profile_shares(fill, z):
+    """The velocity at heights z (n,) over the mean of the fill: (n,).
+
+    Logarithmic: u ~ ln(30 z / ks) above a fully rough bed (Nikuradse 1933), whose mean over the depth H is
+    ln(30 H / ks) - 1 + ks / (30 H), for nothing flows backward below ks / 30.
+    """
+    above, depth, profile = z - fill.min[2], fill.max[2] - fill.min[2], fill.profile
+    if profile is None:
+        return np.ones(z.size)
+    if profile.kind == "linear":
+        return profile.bottom + 2.0 * (1.0 - profile.bottom) * above / depth
+    if profile.kind == "table":
+        return np.interp(above, profile.heights, profile.shares)
+    rough = profile.roughness / 30.0
+    return np.log(np.maximum(above / rough, 1.0)) / (math.log(depth / rough) - 1.0 + rough / depth)

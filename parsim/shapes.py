@@ -114,3 +114,16 @@ def taken_by_bodies(points, case, bodies):
     depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near]
     depth = np.round(depth / case.spacing, 6)  # points of one lattice plane are equally deep
     return number[near[np.lexsort((scatter(number[near]), depth))[:count]]]
+
+
+def disordered(points, number, first, share, axes):
+    """Points (n, 3), m, of these numbers of a Lattice, each moved by up to `share` spacings along each of `axes`.
+
+    The moves are a fixed shuffle of the particle's number, `first` + number; none leads beyond the outermost planes.
+    """
+    place = points.points(number)
+    if share:
+        for a in axes:
+            move = scatter(3 * (first + number) + a) / 2.0**63 - 1.0
+            place[:, a] = np.clip(place[:, a] + share * points.spacing[a] * move, *points.rows[a][[0, -1]])
+    return place

@@ -1,6 +1,5 @@
 """The time loop: what happens in a step, when lists are rebuilt, when things are written, when the run stops."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from parsim.output.checkpoint import Snapshot
 from parsim.output.folder import Folder
 from parsim.output.keeper import Keeper
 from parsim.output.recorder import Recorder
-from parsim.setup import Models, check_ranks, columns, water
+from parsim.setup import Models, check_ranks, columns, flow, water
 from parsim.stop import STOPPED, Stop
 from parsim.timers import Timers
 from parsim.watch import Watch
@@ -35,7 +34,7 @@ class Simulation:
         self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
         self._uneven, self.gone = [0.0, 1.0, 0], []  # sum, most and number of looks
-        self._damping = 2.0 * math.sqrt(math.hypot(*case.gravity) / case.depth) if case.depth else 0.0
+        self._damping = case.speed / case.depth if case.depth else 0.0
         if snapshot is None:
             self.domain.cut_evenly(*columns(case))
             self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
@@ -94,6 +93,8 @@ class Simulation:
         force = self._half_step(dt)
         self._move(force, dt, keep)
         self.scheme.finish(self.domain, self.near, dt, self.speed)
+        if self.time < 0.0 <= self.time + dt:
+            flow(self.case, self.domain.particles)
         self.time += dt
         self.step_count += 1
         self.since += 1

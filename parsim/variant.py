@@ -112,7 +112,7 @@ def source_hash():
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         text = path.read_bytes()
-        if b"parsim.jit" in text or path.name in ("jit.py", "variant.py"):
+        if b"parsim.jit" in text or b"@implements" in text or path.name in ("jit.py", "variant.py"):
             digest.update(f"{path.absolute()} {path.stat().st_mtime_ns}".encode() + text)
     return digest.hexdigest()[:16]
 

@@ -123,10 +123,12 @@ def exercise():
     """Run a small case with everything in it for a few steps, which compiles and caches, or loads, every kernel."""
     from parsim.case import parse
     from parsim.comm import Comm
+    from parsim.fluid.weights import WEIGHTS
     from parsim.output.measure import Measure
     from parsim.solver import Simulation
 
-    for data in (_CASE, _CASE | _PERIODIC):
+    weights = [_CASE | {"water": _CASE["water"] | {"weight": name}} for name in WEIGHTS]
+    for data in (*weights, _CASE | _PERIODIC):
         case = parse(data)
         simulation = Simulation(case, Comm())
         for _ in range(3):

@@ -40,30 +40,30 @@ def sweeps(simulation, calls):
     `listed` is the number of listed pairs over that of true ones.
     """
     domain, near, scheme = simulation.domain, simulation.near, simulation.scheme
-    p, radius = domain.particles, scheme.lattice.radius
+    p, lattice = domain.particles, scheme.lattice
     lists = near.fluid, near.start, near.middle, near.end
     place, flow = (p.x, p.y, p.z), (p.u, p.v, p.w)
     count = np.zeros(len(p))
-    true_pairs(near.fluid, near.start, near.end, near.index, *place, radius**2, count)
+    true_pairs(near.fluid, near.start, near.end, near.index, *place, lattice.radius**2, count)
     pairs = int(count.sum())
     listed = int((near.end - near.start)[near.fluid].sum())
     close = _neighbours_in_cache(near, p)
-    out = [np.zeros(len(p)) for _ in range(8)]
+    out = [np.zeros(len(p)) for _ in range(10)]
 
     def momentum(index):
-        kernels.momentum(*lists, index, *place, *flow, p.n, p.q, p.scale, radius, scheme.close2, 1.0, 1.0, 1.0,
-                         scheme.lattice.number, *out[:7])
+        kernels.momentum(*lists, index, *place, *flow, p.p, p.scale, lattice.weight, lattice.own, lattice.whole,
+                         scheme.close2, 1.0, 1.0, 1.0, *out)
 
     def continuity(index):
-        kernels.continuity(*lists, index, *place, *flow, p.n, p.c, p.scale, radius, scheme.lattice.number, 1.0, 1.0,
-                           0.0, 0.0, 0.0, *out[:4])
+        kernels.continuity(*lists, index, *place, *flow, p.n, p.bx, p.by, p.bz, p.scale, lattice.weight,
+                           lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing, *out[:7])
 
     works = {
         "momentum": lambda: momentum(near.index),
         "continuity": lambda: continuity(near.index),
         "momentum_in_cache": lambda: momentum(close),
         "continuity_in_cache": lambda: continuity(close),
-        "gathers": lambda: gathers(near.fluid, near.start, near.end, near.index, *place, *flow, p.n, p.q, out[0]),
+        "gathers": lambda: gathers(near.fluid, near.start, near.end, near.index, *place, *flow, p.n, p.p, out[0]),
         "lists": lambda: near.build(domain, simulation.models.reach),
     }
     return {name: 1e9 * _least(work, calls) / pairs for name, work in works.items()} | {"listed": listed / pairs}

@@ -1,25 +1,28 @@
 """Sweeps of the explicit MPS scheme over neighbour lists.
 
 Every sweep is in gather form: particle i sums over its own list and writes only to i. Per listed pair the two large
-sweeps take 8 gathers and 35-45 flops. They are bound by the issue of instructions: `parsim bench` finds 8 to 13 % less
-with all neighbours in the first cache, and two thirds of the time for the gathers alone. Boundary neighbours carry n
-and q already multiplied by their scale (share of a lattice volume), so that bodies sampled at another spacing weigh
-what they are.
+sweeps take 7 to 10 gathers and 35-50 flops. They are bound by the issue of instructions: `parsim bench` finds 8 to 13 %
+less with all neighbours in the first cache, and two thirds of the time for the gathers alone. Boundary neighbours count
+by their scale (share of a lattice volume), so that bodies sampled at another spacing weigh what they are.
 """
 
 import math
 
 import numpy as np
 
+from parsim.fluid.weights.choice import weight_at
 from parsim.jit import each, kernel, prange, rows
-from parsim.state import FLUID, SURFACE
+from parsim.state import DETACHED, FLUID
 
 
 @each
-def predict(kind, surface, u, v, w, rate, half, n0, stiffness, x, y, z, n, p, q):
+def predict(kind, surface, u, v, w, rate, half, n0, stiffness, x, y, z, n, p):
     """Fluid `half` a step on, halo included: positions, number density, pressure.
 
-    State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero at the surface.
+    State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero in a splash. At the
+    surface it comes out near zero by itself, for continuity lacks there what the pressure force lacks. Setting it to
+    zero, as Mellado does, makes it jump by c0^2 dn/n0, more than the weight of some rows, whenever a particle is
+    found at the surface or no longer: still water then boils at 0.1 m/s.
     """
     for i in prange(n.size):
         if kind[i] == FLUID:
@@ -29,129 +32,120 @@ def predict(kind, surface, u, v, w, rate, half, n0, stiffness, x, y, z, n, p, q)
             n[i] += half * n[i] * rate[i]
             s = n[i] / n0
             s2 = s * s
-            p[i] = 0.0 if surface[i] >= SURFACE else stiffness * (s2 * s2 * s2 * s - 1.0)
-            q[i] = p[i] / n[i]
-
-
-@kernel
-def seventh_root(y):
-    """Seventh root of 1 + y, y >= 0 and small, by Newton's method: no pow, whose last bit depends on the library."""
-    s = 1.0 + y / 7.0
-    for _ in range(4):
-        s2 = s * s
-        s6 = s2 * s2 * s2
-        s -= (s6 * s - 1.0 - y) / (7.0 * s6)
-    return s
+            p[i] = 0.0 if surface[i] == DETACHED else stiffness * (s2 * s2 * s2 * s - 1.0)
 
 
 @kernel
 def seventh_roots(y):
-    """`seventh_root` of each y (n,)."""
+    """Seventh roots of 1 + y, y (n,) >= 0 and small, by Newton: no pow, whose last bit depends on the library."""
     out = np.empty(y.size)
     for i in range(y.size):
-        out[i] = seventh_root(y[i])
+        s = 1.0 + y[i] / 7.0
+        for _ in range(4):
+            s2 = s * s
+            s6 = s2 * s2 * s2
+            s -= (s6 * s - 1.0 - y[i]) / (7.0 * s6)
+        out[i] = s
     return out
 
 
 @rows
-def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, scale, gx, gy, gz, density, radius, n0,
-                      stiffness, n, p, q):
-    """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27), n by the inverse state.
+def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, gx, gy, gz, density, weight, p):
+    """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27).
 
     `ax, ay, az` hold the acceleration of the boundary sample itself.
     """
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi = x[i], y[i], z[i]
-        weight = 0.0
+        every = 0.0
         total = 0.0
         hx, hy, hz = density * (gx - ax[i]), density * (gy - ay[i]), density * (gz - az[i])
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = xi - x[j], yi - y[j], zi - z[j]
-            r = math.sqrt(dx * dx + dy * dy + dz * dz)
-            wt = max(radius / r - 1.0, 0.0)
-            weight += wt
+            r2 = dx * dx + dy * dy + dz * dz
+            wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            every += wt
             total += wt * (p[j] + hx * dx + hy * dy + hz * dz)
-        p[i] = max(total / weight, 0.0) if weight > 0.0 else 0.0
-        number = n0 * seventh_root(p[i] / stiffness)
-        n[i] = number * scale[i]
-        q[i] = p[i] / number * scale[i]
+        p[i] = max(total / every, 0.0) if every > 0.0 else 0.0
 
 
 @rows
-def momentum(at, start, middle, end, index, x, y, z, u, v, w, n, q, scale, radius, close2, push, drag, hit, n0,
-             ax, ay, az, c, nx, ny, nz):
-    """Pair accelerations, concentration and inward normal of fluid particles.
+def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, scale, weight, own, whole, close2, push, drag, hit,
+             ax, ay, az, c, nx, ny, nz, bx, by, bz):
+    """Pair accelerations, concentration, inward normal and viscous sums of fluid particles.
 
-    Pressure gradient of Mellado 2021, eq. 5.15, with constant density, push = d / (n0 rho0); viscosity in the
-    angular-momentum conserving form, drag = 2 d (d + 2) nu / n0, fluid-fluid only; collision of eqs 5.38-5.39 with
-    the sign corrected, as the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2).
+    Pressure gradient of Mellado 2021, eq. 5.15, with constant volumes, push = d / (n0 rho0); viscosity in the
+    angular-momentum conserving form, drag = 2 d (d + 2) nu / n0, fluid-fluid only, whose sums b are what the noise
+    damping works on (`continuity`); off walls and bodies, the collision of eqs 5.38-5.39 with the sign corrected, as
+    the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2). Water does not collide with
+    water: shifting keeps it apart, and a collision takes energy from all that strains.
     """
     for row in prange(at.size):
         i = at[row]
-        xi, yi, zi, ui, vi, wi, qi, ni = x[i], y[i], z[i], u[i], v[i], w[i], q[i], n[i]
-        sx, sy, sz, s = 0.0, 0.0, 0.0, 0.0
+        xi, yi, zi, ui, vi, wi, pi = x[i], y[i], z[i], u[i], v[i], w[i], p[i]
+        sx, sy, sz, s = 0.0, 0.0, 0.0, own
         mx, my, mz = 0.0, 0.0, 0.0
+        lx, ly, lz = 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
-            inverse2 = inverse * inverse
-            wt = max(radius * inverse - 1.0, 0.0)
-            g = wt * inverse2
-            approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
-            bounce = hit * min(approach, 0.0) if r2 < close2 else 0.0
-            f = (drag * g * approach + bounce) * inverse2 - push * g * (ni * q[j] + qi * n[j])
+            _, g, measure = weight_at(weight, r2, inverse)
+            b = g * inverse * inverse * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
+            f = g * (pi + p[j])
             sx += f * dx
             sy += f * dy
             sz += f * dz
-            s += wt
-            e = wt * inverse
-            mx += e * dx
-            my += e * dy
-            mz += e * dz
+            lx += b * dx
+            ly += b * dy
+            lz += b * dz
+            s += measure
+            mx += g * dx
+            my += g * dy
+            mz += g * dz
+        sx, sy, sz = drag * lx - push * sx, drag * ly - push * sy, drag * lz - push * sz
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
-            inverse2 = inverse * inverse
-            wt = max(radius * inverse - 1.0, 0.0)
+            _, g, measure = weight_at(weight, r2, inverse)
             approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
-            bounce = hit * scale[j] * min(approach, 0.0) if r2 < close2 else 0.0
-            f = bounce * inverse2 - push * wt * inverse2 * (ni * q[j] + qi * n[j])
+            bounce = hit * inverse * inverse * min(approach, 0.0) if r2 < close2 else 0.0
+            f = (bounce - push * g * (pi + p[j])) * scale[j]
             sx += f * dx
             sy += f * dy
             sz += f * dz
-            s += wt * scale[j]
-            e = wt * inverse * scale[j]
+            s += measure * scale[j]
+            e = g * scale[j]
             mx += e * dx
             my += e * dy
             mz += e * dz
         ax[i], ay[i], az[i] = sx, sy, sz
-        c[i] = s / n0
+        c[i] = s / whole
         nx[i], ny[i], nz[i] = mx, my, mz
+        bx[i], by[i], bz[i] = lx, ly, lz
 
 
 @rows
-def reaction(at, start, middle, index, x, y, z, u, v, w, n, q, scale, radius, close2, push, hit, out):
+def reaction(at, start, middle, index, x, y, z, u, v, w, p, scale, weight, close2, push, hit, out):
     """Pair accelerations that body samples give back to the water they see, times -1: rows of out (samples, 3)."""
     for row in prange(at.size):
         i = at[row]
-        xi, yi, zi, ui, vi, wi, qi, ni, share = x[i], y[i], z[i], u[i], v[i], w[i], q[i], n[i], scale[i]
+        xi, yi, zi, ui, vi, wi, pi, share = x[i], y[i], z[i], u[i], v[i], w[i], p[i], scale[i]
         sx, sy, sz = 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
-            inverse2 = inverse * inverse
-            wt = max(radius * inverse - 1.0, 0.0)
+            _, g, _ = weight_at(weight, r2, inverse)
             approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
-            bounce = hit * share * min(approach, 0.0) if r2 < close2 else 0.0
-            f = bounce * inverse2 - push * wt * inverse2 * (ni * q[j] + qi * n[j])
+            bounce = hit * inverse * inverse * min(approach, 0.0) if r2 < close2 else 0.0
+            f = (bounce - push * g * (pi + p[j])) * share
             sx += f * dx
             sy += f * dy
             sz += f * dz
@@ -159,44 +153,56 @@ def reaction(at, start, middle, index, x, y, z, u, v, w, n, q, scale, radius, cl
 
 
 @rows
-def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, c, scale, radius, n0, flow, spread, hx, hy, hz,
-               rate, ax, ay, az):
-    """Relative rate of n (Mellado 2021, eq. 5.16) with diffusion, and the sum of the concentration gradient (eq. 5.33).
+def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, scale, weight, n0, flow, spread, hx, hy,
+               hz, crowd, close, rate, ax, ay, az, ex, ey, ez):
+    """Relative rate of n (Mellado 2021, eq. 5.16) with diffusion; the sums of shifting and of noise damping.
 
     flow = d / n0; spread = delta c0^2 dt 2 d / (lambda n0), fluid-fluid only, on n less its hydrostatic part, whose
-    slope over n0 is h = g / c0^2 (Mellado's eq. 5.30 lets the hydrostatic pressure sag). ax, ay, az receive
-    sum (c_i + c_j) e W / r.
+    slope over n0 is h = g / c0^2 (Mellado's eq. 5.30 lets the hydrostatic pressure sag).
+    ax, ay, az receive sum (2 + crowd (close - r)+) e W / r: what pushes particles apart. Its first part, unlike the
+    concentration gradient of eq. 5.33, is zero wherever the pressure force of even water is; the second keeps
+    streams that strain from leaving the particles in files, which cost a Taylor-Green vortex a fifth of its energy.
+    ex, ey, ez receive the viscous sums of the viscous sums b: twice applied, the viscosity damps what changes from
+    particle to particle and leaves what changes over many.
     """
     for row in prange(at.size):
         i = at[row]
-        xi, yi, zi, ui, vi, wi, ci, ni = x[i], y[i], z[i], u[i], v[i], w[i], c[i], n[i]
+        xi, yi, zi, ui, vi, wi, ni = x[i], y[i], z[i], u[i], v[i], w[i], n[i]
+        bxi, byi, bzi = bx[i], by[i], bz[i]
         divergence, diffusion = 0.0, 0.0
         sx, sy, sz = 0.0, 0.0, 0.0
+        lx, ly, lz = 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
-            inverse = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-            wt = max(radius * inverse - 1.0, 0.0)
-            g = wt * inverse * inverse
-            divergence += n[j] * g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
+            r2 = dx * dx + dy * dy + dz * dz
+            inverse = 1.0 / math.sqrt(r2)
+            wt, g, _ = weight_at(weight, r2, inverse)
+            divergence += g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
             diffusion += wt * ((n[j] - ni) / n0 - (hx * dx + hy * dy + hz * dz))
-            f = g * (ci + c[j])
+            b = g * inverse * inverse * ((bx[j] - bxi) * dx + (by[j] - byi) * dy + (bz[j] - bzi) * dz)
+            lx += b * dx
+            ly += b * dy
+            lz += b * dz
+            f = g * (2.0 + crowd * max(close - r2 * inverse, 0.0))
             sx += f * dx
             sy += f * dy
             sz += f * dz
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
-            inverse = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-            wt = max(radius * inverse - 1.0, 0.0)
-            g = wt * inverse * inverse
-            divergence += n[j] * g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
-            f = g * (ci + 1.0) * scale[j]
+            r2 = dx * dx + dy * dy + dz * dz
+            inverse = 1.0 / math.sqrt(r2)
+            _, g, _ = weight_at(weight, r2, inverse)
+            g *= scale[j]
+            divergence += g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
+            f = g * (2.0 + crowd * max(close - r2 * inverse, 0.0))
             sx += f * dx
             sy += f * dy
             sz += f * dz
-        rate[i] = spread * diffusion - flow * divergence / ni
+        rate[i] = spread * diffusion - flow * divergence
         ax[i], ay[i], az[i] = sx, sy, sz
+        ex[i], ey[i], ez[i] = lx, ly, lz
 
 
 @each
@@ -225,6 +231,16 @@ def grow(at, rate, dt, n):
     for row in prange(at.size):
         i = at[row]
         n[i] += dt * n[i] * rate[i]
+
+
+@each
+def damp(at, share, ex, ey, ez, u, v, w):
+    """Velocity of the particles `at` less `share` of their twofold viscous sums."""
+    for row in prange(at.size):
+        i = at[row]
+        u[i] -= share * ex[i]
+        v[i] -= share * ey[i]
+        w[i] -= share * ez[i]
 
 
 @each

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from parsim.fluid.weights.choice import weight_at
 from parsim.jit import kernel, prange, rows
 from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
 
@@ -46,40 +47,40 @@ def classify(at, start, end, index, x, y, z, c, spacing, lowest, highest, surfac
 
 
 @kernel
-def packing(i, start, middle, end, index, x, y, z, scale, radius, cut):
-    """Kernel sum of particle i, and an estimate of what a free surface has cut off of it; cut: see `Lattice`."""
+def packing(i, start, middle, end, index, x, y, z, scale, weight, cut):
+    """Measure of the neighbours of particle i with an estimate of what a surface has cut off; cut: see `Lattice`."""
     s, mx, my, mz = 0.0, 0.0, 0.0, 0.0
     for t in range(np.uint64(start), np.uint64(end)):
         j = index[t]
         dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
-        inverse = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-        wt = max(radius * inverse - 1.0, 0.0) * (scale[j] if t >= middle else 1.0)
-        s += wt
-        mx += wt * inverse * dx
-        my += wt * inverse * dy
-        mz += wt * inverse * dz
+        r2 = dx * dx + dy * dy + dz * dz
+        inverse = 1.0 / math.sqrt(r2)
+        _, _, measure = weight_at(weight, r2, inverse)
+        measure *= scale[j] if t >= middle else 1.0
+        s += measure
+        mx += measure * inverse * dx
+        my += measure * inverse * dy
+        mz += measure * inverse * dz
     return s + cut * math.sqrt(mx * mx + my * my + mz * mz)
 
 
 @rows
-def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, near, radius, near2, factor, longest, n0,
-          lost, hx, hy, hz, pull, loosest, ax, ay, az, surface, n):
-    """Shift -factor grad C of fluid particles into ax, ay, az (Mellado 2021, eqs 5.31, 5.36-5.37), at most `longest`.
+def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, near, weight, radius, near2, factor,
+          longest, n0, own, whole, lost, hx, hy, hz, slope, pull, loosest, ax, ay, az, surface, n):
+    """Shift -factor times the sums ax, ay, az of fluid particles, into them (Mellado 2021, eqs 5.31, 5.36-5.37).
 
-    Never outward through the surface: surface particles move along it, those within sqrt(near2) of one not toward
+    At most `longest`. Never outward through the surface: surface particles move along it, those that see one not toward
     it; detached ones stay. Marks the vicinity. Only where `near` (particles,) is true can a surface particle be listed;
-    without it this scan for them took a fifth of a step.
+    without it this scan for them took a fifth of a step. A shifted particle takes the hydrostatic density of its new
+    place, whose slope along gravity over n0 is `slope`; hx, hy, hz is the unit vector down.
 
-    Shifting moves particles but not the evolved n, and diffusion across the surface feeds it: unseen, water at rest
-    would swell, 20 deep by 0.05 % a second in 2D and 0.1 % in 3D, 6 deep by 0.8 % and 3 deep by 10 %. So n goes back to
-    the kernel sum, by the share `pull`, where no surface or body is in the support and no wall within sqrt(near2):
-    beside a wall the sum is 0.5 % too high on average, and pulling there too adds 1 % to the bottom pressure at H/40.
-    Water so thin that it has no such place is pulled where it sees the surface and a bed straight below, along the unit
-    vector h, and more strongly, to the sum with what the surface has cut off (`packing`; lost is `Lattice.cut`), which
-    is 1 to 2 % too low in the rows below it. Under the waterline of other walls that would take 0.1 % off the level of
-    a narrow tank.
-    At the surface, where the pressure is zero whatever n is, n stays within the share `loosest` of n0: a drop must not
-    come back with another pressure than the flow can have.
+    Shifting moves particles but not the evolved n, which would drift. So n goes back to the concentration, by the share
+    `pull`, where no surface or body is in the support and no wall within sqrt(near2). Water so thin that it has no such
+    place is pulled where it sees the surface and a bed straight below, and more strongly, to the measure with what the
+    surface has cut off (`packing`; lost is `Lattice.cut`). Under the waterline of other walls that would take 0.1 %
+    off the level of a narrow tank.
+    At the surface n stays within the share `loosest` of n0: a drop must not come back with another pressure than the
+    flow can have.
     """
     for row in prange(at.size):
         i = at[row]
@@ -97,13 +98,13 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, ne
                 if surface[j] == SURFACE:
                     dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
                     r2 = dx * dx + dy * dy + dz * dz
-                    if r2 < near2:
-                        surface[i] = VICINITY
-                    wt = max(radius / math.sqrt(r2) - 1.0, 0.0)
+                    wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
                     seen = seen or wt > 0.0
                     mx += nx[j] * wt
                     my += ny[j] * wt
                     mz += nz[j] * wt
+        if seen:
+            surface[i] = VICINITY
         if inside:
             t, beside = middle[i], False
             while not beside and t < end[i]:
@@ -119,8 +120,8 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, ne
             if not seen and not beside:
                 n[i] += pull * (n0 * c[i] - n[i])
             elif seen and beside:
-                whole = packing(i, start[i], middle[i], end[i], index, x, y, z, scale, radius, lost)
-                n[i] += _SQUEEZED * pull * (whole - n[i])
+                packed = own + packing(i, start[i], middle[i], end[i], index, x, y, z, scale, weight, lost)
+                n[i] += _SQUEEZED * pull * (n0 * packed / whole - n[i])
         if surface[i] != INTERNAL:
             length2 = mx * mx + my * my + mz * mz
             out = sx * mx + sy * my + sz * mz
@@ -131,3 +132,4 @@ def shift(at, start, middle, end, index, x, y, z, nx, ny, nz, c, scale, body, ne
         length = math.sqrt(sx * sx + sy * sy + sz * sz)
         cut = longest / length if length > longest else 1.0
         ax[i], ay[i], az[i] = cut * sx, cut * sy, cut * sz
+        n[i] += n0 * slope * cut * (hx * sx + hy * sy + hz * sz)

@@ -10,34 +10,37 @@ import math
 import numpy as np
 
 from parsim.fluid import kernels, surface
-from parsim.fluid.weights import Lattice
+from parsim.fluid.reference import Lattice
 from parsim.state import SURFACE
 from parsim.timers import Timers
 
-_LOWEST, _HIGHEST = 0.4, 0.9  # concentrations below which a particle is detached, above which never at the surface
-_VICINITY = 2.1  # in spacings
-_LONGEST_SHIFT = 0.1  # in spacings
+_BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
+_CLOSE, _CROWD = 0.8, 100.0  # spacings below which shifting pushes harder, and by how much more for each spacing less
+_LONGEST_SHIFT = 0.05  # in spacings
 _LARGEST_MACH = 0.2
 
 
 class WCMPS:
     """The scheme for one case: constants, and the sweeps in their order."""
 
-    STATE = ("x", "y", "z", "n", "rate")  # what the halos need of the full step
+    STATE = ("x", "y", "z", "u", "v", "w", "n", "rate")  # what the halos need of the full step
 
     def __init__(self, case, timers=None):
         water = case.water
         self.timers = timers or Timers()
-        self.lattice = Lattice(case.dimensions, case.spacing, water.support)
+        self.lattice = lattice = Lattice(case.dimensions, case.spacing, water.support, water.weight)
         self.density, self.sound, self.gravity = water.density, case.sound_speed, case.gravity
         self.stiffness = self.sound**2 * water.density / 7.0
-        self.viscosity = max(water.viscosity, water.damping_viscosity * self.sound * case.spacing)
+        self.viscosity, self.noise_damping = water.viscosity, water.noise_damping
         self.mass = water.density * self.lattice.volume
         self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
         self.loosest = 0.5 / water.sound**2  # the stagnation pressure of the largest expected speed
-        self.recovery = water.recovery * case.speed / case.depth if case.depth else 0.0
+        gravity = math.hypot(*case.gravity)
+        # so much closer than the lattice does the model's water lie under half its depth: thus a fill keeps its level
+        self._whole = lattice.whole / (1.0 + 0.5 * gravity * case.depth / self.sound**2)
+        self.recovery = 2.0 * water.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self.restitution = water.restitution
-        self._down = np.array(case.gravity) / (math.hypot(*case.gravity) or 1.0)
+        self._down, self._slope = np.array(case.gravity) / (gravity or 1.0), gravity / self.sound**2
         self.close2 = (water.collision_distance * case.spacing) ** 2
 
     def time_step(self, speed):
@@ -51,33 +54,34 @@ class WCMPS:
     def predict(self, p, dt):
         """Fluid to the half step, halo included: r, n, then the pressure."""
         kernels.predict(p.kind, p.surface, p.u, p.v, p.w, p.rate, 0.5 * dt, self.lattice.number, self.stiffness, p.x,
-                        p.y, p.z, p.n, p.p, p.q)
+                        p.y, p.z, p.n, p.p)
 
     def accelerate(self, domain, near, dt):
         """Boundary pressures, then pair accelerations, concentration and surface of the fluid, at the half step."""
         p, lattice = domain.particles, self.lattice
         with self.timers("boundary"):
             kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.ax, p.ay,
-                                      p.az, p.scale, *self.gravity, self.density, lattice.radius, lattice.number,
-                                      self.stiffness, p.n, p.p, p.q)
-        with domain.refreshing("n", "q"):
+                                      p.az, *self.gravity, self.density, lattice.weight, p.p)
+        with domain.refreshing("p"):
             self._momentum(p, near, near.inner, dt)
         self._momentum(p, near, near.border, dt)
         with self.timers("surface"):
-            surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, lattice.spacing, _LOWEST,
-                             _HIGHEST, p.surface, p.nx, p.ny, p.nz)
+            surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, lattice.spacing,
+                             lattice.lowest, lattice.highest, p.surface, p.nx, p.ny, p.nz)
 
     def _momentum(self, p, near, at, dt):
+        lattice = self.lattice
         with self.timers("momentum"):
-            kernels.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n, p.q,
-                             p.scale, self.lattice.radius, self.close2, self._push, self._drag, self._hit(dt),
-                             self.lattice.number, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz)
+            kernels.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
+                             p.scale, lattice.weight, lattice.own, self._whole, self.close2, self._push,
+                             self.viscosity * self._viscous, self._hit(dt), p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz,
+                             p.bx, p.by, p.bz)
 
     def react(self, domain, near, dt):
         """Forces of the water on the body samples `near.body`, N: (samples, 3)."""
         p, out = domain.particles, np.empty((near.body.size, 3))
-        kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n, p.q,
-                         p.scale, self.lattice.radius, self.close2, self._push, self._hit(dt), out)
+        kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p, p.scale,
+                         self.lattice.weight, self.close2, self._push, self._hit(dt), out)
         out *= self.mass
         return out
 
@@ -90,9 +94,9 @@ class WCMPS:
         kernels.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
 
     def finish(self, domain, near, dt, speed):
-        """Positions to the full step, continuity there, then shifting; `STATE` is left to be refreshed."""
+        """Positions to the full step, continuity there, damping, shifting; `STATE` is left to be refreshed."""
         p, own = domain.particles, domain.own
-        with domain.refreshing("u", "v", "w", "c", "nx", "ny", "nz", "surface"):
+        with domain.refreshing("u", "v", "w", "bx", "by", "bz", "nx", "ny", "nz", "surface"):
             self._drift(p, own, dt)
             self._continuity(p, near, near.inner, speed)
         for halo in (slice(0, own.start), slice(own.stop, len(p))):
@@ -100,6 +104,8 @@ class WCMPS:
         self._continuity(p, near, near.border, speed)
         with self.timers("move"):
             kernels.grow(near.fluid, p.rate, 0.5 * dt, p.n)
+            share = self.noise_damping * self.sound * self.lattice.spacing**3 * self._viscous**2 * dt
+            kernels.damp(near.fluid, share, p.ex, p.ey, p.ez, p.u, p.v, p.w)
         if self.shifting:
             with self.timers("shifting"):
                 self._shift(domain, near, dt, speed)
@@ -109,21 +115,23 @@ class WCMPS:
             kernels.drift(p.kind[at], p.u[at], p.v[at], p.w[at], 0.5 * dt, p.x[at], p.y[at], p.z[at])
 
     def _continuity(self, p, near, at, speed):
-        slope = [g / self.sound**2 for g in self.gravity]
+        lattice = self.lattice
         spread = self.diffusion * self.sound**2 * self.time_step(speed) / self.cfl * self._laplacian
         with self.timers("continuity"):
             kernels.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
-                               p.c, p.scale, self.lattice.radius, self.lattice.number, self._gradient, spread, *slope,
-                               p.rate, p.ax, p.ay, p.az)
+                               p.bx, p.by, p.bz, p.scale, lattice.weight, lattice.number, self._gradient, spread,
+                               *(self._down * self._slope), _CROWD / lattice.spacing, _CLOSE * lattice.spacing, p.rate,
+                               p.ax, p.ay, p.az, p.ex, p.ey, p.ez)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
         mach = min(speed / self.sound, _LARGEST_MACH)
         factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
         surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
-                      p.scale, p.body, domain.near(SURFACE, "surface"), lattice.radius,
-                      (_VICINITY * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,
-                      lattice.cut, *self._down, self.recovery * dt, self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
+                      p.scale, p.body, domain.near(SURFACE, "surface"), lattice.weight, lattice.radius,
+                      (_BESIDE * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,
+                      lattice.own, self._whole, lattice.cut, *self._down, self._slope, self.recovery * dt,
+                      self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
         kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
@@ -139,8 +147,8 @@ class WCMPS:
         return self._gradient / self.density
 
     @property
-    def _drag(self):
-        return self.viscosity * 2.0 * self.lattice.dimensions * (self.lattice.dimensions + 2) / self.lattice.number
+    def _viscous(self):
+        return 2.0 * self.lattice.dimensions * (self.lattice.dimensions + 2) / self.lattice.number
 
     def _hit(self, dt):
         return 0.5 * (1.0 + self.restitution) / dt
