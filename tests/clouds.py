@@ -1,4 +1,4 @@
-"""Small particle clouds for the tests of lists and sweeps, and their slow plain neighbours."""
+"""Small particle clouds for the tests of lists and sweeps, and the weights of their neighbours in plain formulas."""
 
 import numpy as np
 
@@ -7,6 +7,27 @@ from parsim.comm import Comm
 from parsim.domain import Domain
 from parsim.neighbours import Neighbours
 from parsim.state import FLUID, WALL, Particles, make_id
+
+
+def _mps(r, radius):
+    w = np.maximum(radius / r - 1, 0)
+    return w, w
+
+
+def _wendland_c2(r, radius):
+    q = np.minimum(r / radius, 1)
+    w = q**2 * (1 - q) ** 3
+    return w, (1 - q) ** 4 * (4 * q + 1) + 1.5 * w
+
+
+def _wendland_c4(r, radius):
+    q = np.minimum(r / radius, 1)
+    w = q**2 * (1 - q) ** 4 * (1 + 4 * q)
+    return w, (1 - q) ** 5 * (1 + 5 * q + 8 * q**2) + 1.8 * w
+
+
+# W and the measure of concentration at distances r (n,)
+PLAIN = {"mps": _mps, "wendland_c2": _wendland_c2, "wendland_c4": _wendland_c4}
 
 
 class Fixed:

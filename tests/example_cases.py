@@ -25,6 +25,8 @@ material = "wood"
 [run]
 until = 1.0
 """
+# the same with water that flows
+FLOWING = PLANE.replace("0.4]}", """0.4], velocity = [0.2, 0.0, 0.0], profile = {kind = "log", roughness = 0.001}}""")
 # a body, to be filled with its name, position and angles
 BLOCK = '{name="%s", shape={size=[0.05,0.05,0.02]}, density=900, position=%s, angles=%s, material="polypropylene"}'
 

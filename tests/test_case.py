@@ -6,7 +6,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from example_cases import PLANE, ROOT, SPACE, write
+from example_cases import FLOWING, PLANE, ROOT, SPACE, write
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -89,9 +89,21 @@ def test_proposed_spacings_divide_the_box_and_are_nearest(edges, spacing):
         assert len(proposed) == 1 or proposed[0] < spacing < proposed[1]
 
 
+@pytest.mark.parametrize("profile", [
+    {"kind": "linear"}, {"kind": "linear", "bottom": 0.3}, {"kind": "log", "roughness": 0.01},
+    {"kind": "table", "heights": [0.0, 0.1, 0.4], "shares": [0.5, 1.0, 1.1]},
+])  # fmt: skip
+def test_profiles_read_back_equal(profile):
+    data = tomllib.loads(PLANE)
+    data["water"]["fill"][0]["profile"] = profile
+    case = parse(data)
+    assert parse(tomllib.loads(case.to_toml())) == case
+    assert case.water.fill[0].profile.kind == profile["kind"]
+
+
 def test_schema_describes_every_key():
     tables = [schema(), *schema()["$defs"].values()]
-    assert len(tables) == 13
+    assert len(tables) == 14
     for table in tables:
         for name, key in table["properties"].items():
             assert key.get("description"), name
@@ -102,7 +114,7 @@ def test_schema_and_models_know_the_same_keys():
 
 
 # complete, so that every key there is can be mutated
-VALID = [tomllib.loads(parse(tomllib.loads(text)).to_toml()) for text in (SPACE, PLANE)]
+VALID = [tomllib.loads(parse(tomllib.loads(text)).to_toml()) for text in (SPACE, PLANE, FLOWING)]
 VALUES = st.one_of(
     st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5), st.just("float"), st.just([]),
     st.lists(st.floats(), max_size=4), st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(0, 1),
@@ -124,7 +136,7 @@ def places(value, path=()):
 
 
 @settings(max_examples=600, deadline=None)
-@given(data=st.data(), kind=st.integers(0, 1))
+@given(data=st.data(), kind=st.integers(0, 2))
 def test_mutations_are_accepted_or_refused_but_never_crash(data, kind):
     case = copy.deepcopy(VALID[kind])
     for _ in range(data.draw(st.integers(1, 4))):

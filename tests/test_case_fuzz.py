@@ -9,7 +9,7 @@ import string
 import tomllib
 
 import pytest
-from example_cases import PLANE, ROOT, SPACE
+from example_cases import FLOWING, PLANE, ROOT, SPACE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -21,10 +21,10 @@ from parsim.errors import InputError
 
 FEW, MANY = 250, 10_000
 SMALL = 3000  # particles of a case that is also built and run
-SOURCES = [SPACE, PLANE, *(file.read_text() for file in sorted((ROOT / "cases").rglob("*.toml")) if file.name[0] != "_"
-                           and "extends" not in file.read_text())]
+SOURCES = [SPACE, PLANE, FLOWING, *(file.read_text() for file in sorted((ROOT / "cases").rglob("*.toml"))
+                                    if file.name[0] != "_" and "extends" not in file.read_text())]
 WHOLE = [read(file) for file in sorted((ROOT / "cases").rglob("*.toml")) if file.name[0] != "_"]
-BASES = [*map(tomllib.loads, (SPACE, PLANE)), *WHOLE]
+BASES = [*map(tomllib.loads, (SPACE, PLANE, FLOWING)), *WHOLE]
 ODD = [0, -1, 1, 1e-9, 1e308, -1e308, 5e-324, -0.0, 10**30, -(10**30), 1e15, 1e6, 0.1, 0.005, math.nan, math.inf,
        -math.inf, True, False, "", "float", "wall", "periodic", "open", "wood", "A1", "\x00", "é" * 50, [], [0.0],
        [0, 0, 0], [0.1, 0.1, 0.1], [1e9] * 3, ["a", 1, {}], {}, {"min": 1}, {"x_min": "periodic"}, [[]], [{}], 2, 3]

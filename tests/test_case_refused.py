@@ -6,6 +6,12 @@ from example_cases import bodies, write
 from parsim.__main__ import main
 from parsim.case import load
 
+
+def profile(words):
+    """The change that gives the first fill a profile with these words."""
+    return ["water.fill.0.profile={" + words + "}"]
+
+
 # base case, changes, fragments of the messages
 BROKEN = {
     "unknown key in a table": ("3d", ["water.suport=3"], ["water.suport: unknown key", "did you mean water.support?"]),
@@ -45,6 +51,37 @@ BROKEN = {
     "fill outside": ("3d", ["water.fill.1.max=[0.5,0.1,0.02]"], ["water.fill.1.max = [0.5, 0.1, 0.02]: x is outside"]),
     "empty fill": ("3d", ["water.fill.0.max=[0.1,0.1,0.0]"], ["water.fill.0.max", "empty, z must be greater"]),
     "fills overlap": ("3d", ["water.fill.1.min=[0.05,0,0]"], ["water.fill.1: overlaps water.fill.0"]),
+    "unknown key of a profile": ("3d", profile('kind="log", rougness=1e-3'),
+                                 ["0.profile.rougness: unknown key; did you mean water.fill.0.profile.roughness?"]),
+    "key that no profile has": ("3d", profile('kind="linear", breeze=1.0'),
+                                ["0.profile.breeze: unknown key; allowed: kind, bottom, roughness, heights, shares"]),
+    "profile of no kind": ("3d", profile("bottom=0.5"), ["0.profile.kind: missing; linear, logarithmic, or a table"]),
+    "unknown profile": ("3d", profile('kind="cubic"'), ["profile.kind = 'cubic': must be 'linear', 'log' or 'table'"]),
+    "number for a profile": ("3d", ["water.fill.0.profile=1"], ["water.fill.0.profile = 1: must be a table"]),
+    "text in a profile": ("3d", profile('kind="table", heights=[0.0, "top"], shares=[1.0, 1.0]'),
+                          ["water.fill.0.profile.heights.1 = 'top': must be a number"]),
+    "profile that runs back": ("3d", profile('kind="linear", bottom=2.5'), ["bottom = 2.5: must be at most 2"]),
+    "log of no roughness": ("3d", profile('kind="log"'), ['profile.roughness: missing; required for kind = "log"']),
+    "log over boulders": ("3d", profile('kind="log", roughness=9.0'),
+                          ["profile.roughness = 9.0: must be less than ten depths of the fill, 1 m"]),
+    "table of one height": ("3d", profile('kind="table", heights=[0.1], shares=[1.0]'),
+                            ["water.fill.0.profile.heights = [0.1]: must be two or more, ascending"]),
+    "table of nothing": ("3d", profile('kind="table"'), ["profile.heights = []: must be two or more, ascending"]),
+    "table upside down": ("3d", profile('kind="table", heights=[0.1, 0.0], shares=[1.0, 1.0]'),
+                          ["profile.heights = [0.1, 0.0]: must be two or more, ascending"]),
+    "long table upside down": ("3d", profile(f'kind="table", heights={[1.0] * 999}, shares={[1.0] * 999}'),
+                               ["1.0, 1.0, 1...: must be two or more, ascending"]),
+    "table with a gap": ("3d", profile('kind="table", heights=[0.0, 0.1, 0.2], shares=[1.0, 1.0]'),
+                         ["water.fill.0.profile.shares: 2 entries for 3 heights; must be as many"]),
+    "keys of another profile": ("3d", profile('kind="linear", roughness=1e-3, shares=[1.0]'),
+                                ['profile.roughness: not used by kind = "linear"; allowed with it: bottom',
+                                 'profile.shares: not used by kind = "linear"; allowed with it: bottom']),
+    "key of a linear profile": ("3d", profile('kind="table", heights=[0.0, 0.1], shares=[1.0, 1.0], bottom=0.5'),
+                                ['bottom: not used by kind = "table"; allowed with it: heights, shares']),
+    "unknown weight": ("3d", ["water.weight=gauss"], ["'gauss': must be 'wendland_c4', 'wendland_c2' or 'mps'"]),
+    "too much damping": ("3d", ["water.noise_damping=0.1"], ["water.noise_damping = 0.1: must be at most 0.005"]),
+    "damping that was": ("3d", ["water.damping_viscosity=0.01"], ["water.damping_viscosity: unknown key"]),
+    "too much disorder": ("3d", ["water.disorder=0.6"], ["water.disorder = 0.6: must be at most 0.5"]),
     "no gravity, no speed": ("3d", ["gravity=[0,0,0]"], ["water.speed: missing", "without gravity"]),
     "no water, no speed": ("3d", ["water.fill=[]", "bodies=[]"], ["water.speed: missing", "without fill"]),
     "gate outside": ("3d", ["gate.max_x=0.41"], ["gate.max_x = 0.41: outside the tank; must be 0.0 to 0.4"]),

@@ -31,6 +31,7 @@ REDUCTIONS = {
     "norm",
 }
 ROUNDED = {"pow", "power", "exp", "expm1", "log", "log1p", "log2", "log10", "sin", "cos", "tan", "tanh", "sinh", "cosh"}
+COMPILED = {"kernel", "each", "rows", "implements"}
 STRICT = ("fluid/", "neighbours.py", "cells.py", "coupling.py", "films.py")
 ABOVE_KERNELS = {"comm", "domain", "solver", "setup", "launch", "case", "output", "report"}
 BESIDE_REPORT = {"output", "errors", "case", "report", "launch"}
@@ -62,13 +63,14 @@ def own(parsed):
 
 
 def kernels(parsed):
-    """Functions compiled by @kernel, @each or @rows."""
+    """Functions compiled by @kernel, @each or @rows, or with those that call them by @implements(...)."""
     for node in ast.walk(parsed):
-        if isinstance(node, ast.FunctionDef) and {_last(d) for d in node.decorator_list} & {"kernel", "each", "rows"}:
+        if isinstance(node, ast.FunctionDef) and {_last(d) for d in node.decorator_list} & COMPILED:
             yield node
 
 
 def _last(node):
+    node = node.func if isinstance(node, ast.Call) else node
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
@@ -114,6 +116,8 @@ def test_the_rules_can_be_broken():
         "      s += x[j] ** 2\n    t += s\n    y[i] = np.sum(x) + math.exp(s) + x @ y\n  return t\n"
     )
     (function,) = kernels(bad)
+    (weight,) = kernels(ast.parse("@implements(Gauss)\ndef f(weight, r2, inverse):\n  return math.exp(-r2), r2**2\n"))
+    assert [fault.split(": ")[1] for fault in arithmetic_faults(weight)] == ["exp()", "**"]
     assert sorted(fault.split(": ")[1] for fault in arithmetic_faults(function)) == ["**", "@", "exp()", "sum()"]
     assert list(reductions(function)) == ["line 8: t is summed over a prange"]
     assert own(ast.parse("from parsim import comm\nfrom parsim.fluid.weights import w")) == {"comm", "fluid"}

@@ -40,9 +40,12 @@ def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monk
     assert main(["compare", str(one_rank / "3d"), str(tmp_path / "first")]) == 0, capsys.readouterr().out
 
 
-@pytest.mark.parametrize("change", [lambda path: os.utime(path, (1, 1)), lambda path: path.write_text("parsim.jit 2")])
-def test_changed_sources_get_a_cache_of_their_own(change, tmp_path, monkeypatch):
-    (tmp_path / "kernels.py").write_text("import parsim.jit")
+@pytest.mark.parametrize("text", ["import parsim.jit\n", "@implements(Gauss)\n"])
+@pytest.mark.parametrize("change", [
+    lambda path: os.utime(path, (1, 1)), lambda path: path.write_text(path.read_text() + "#"),
+])  # fmt: skip
+def test_changed_sources_get_a_cache_of_their_own(text, change, tmp_path, monkeypatch):
+    (tmp_path / "kernels.py").write_text(text)
     monkeypatch.setenv(variant.NAME, "host")
     monkeypatch.setattr(variant, "__file__", str(tmp_path / "variant.py"))
     before = variant.code()

@@ -7,6 +7,7 @@ import pytest
 
 from parsim.case import parse
 from parsim.comm import Comm
+from parsim.diagnostics import energies
 from parsim.setup import water
 from parsim.shapes import Lattice, outside_box, taken_by_bodies
 from parsim.solid.bodies import from_case
@@ -89,6 +90,17 @@ def test_momentum_stays_in_a_periodic_box(shifting):
     assert s.rebuilds > 20 and s.near.fluid.size == 400
     assert after == pytest.approx(before, abs=1e-11)
     assert not np.allclose(p.u[s.near.fluid], p.u[s.near.fluid][0])
+
+
+def test_the_elastic_energy_is_the_work_of_the_pressure():
+    n0, sound2, mass = 20.0, 900.0, 1.7
+    s = np.array([0.97, 0.999, 1.0, 1.003, 1.02])
+    zero, out, gravity = np.zeros(5), np.zeros((5, 4)), (0.0, 0.0, -9.81)
+    energies(np.arange(5), zero, zero, zero + 2.0, zero + 3.0, zero, zero, n0 * s, mass, *gravity, n0, sound2, out)
+    for row, end in zip(out, s, strict=True):
+        middles = 1.0 + (end - 1.0) * (np.arange(2000) + 0.5) / 2000
+        work = (sound2 / 7.0 * (middles**7 - 1.0) / middles).mean() * (end - 1.0)  # p / (rho0 s) over s
+        assert row == pytest.approx([4.5 * mass, 19.62 * mass, mass * work, mass], rel=1e-6, abs=1e-12)
 
 
 def decay_error(spacing, across):
