@@ -167,7 +167,7 @@ def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, sp
 def water_at(i, x, n, start, middle, index, px, py, pz, weight):
     """Sums of sample i: W over all the water it sees; W d / r2 over that before its face, at x with normal n, d ahead.
 
-    The second is what the water pushes with: one layer does 81 % of what deep water does, the film the rest.
+    The second is what the water pushes with: one layer does about 85 % of what deep water does, the film the rest.
     """
     every, ahead = 0.0, 0.0
     for c in range(start[i], middle[i]):
