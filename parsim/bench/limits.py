@@ -10,14 +10,14 @@ from parsim.state import FLUID
 
 
 @rows
-def gathers(at, start, end, index, x, y, z, u, v, w, n, q, out):
+def gathers(at, start, end, index, x, y, z, u, v, w, n, p, out):
     """Nothing but the reading of eight fields of all neighbours: out (particles,) is their sum."""
     for row in prange(at.size):
         i = at[row]
         total = 0.0
         for t in range(np.uint64(start[i]), np.uint64(end[i])):
             j = index[t]
-            total += ((x[j] + y[j]) + (z[j] + u[j])) + ((v[j] + w[j]) + (n[j] + q[j]))
+            total += ((x[j] + y[j]) + (z[j] + u[j])) + ((v[j] + w[j]) + (n[j] + p[j]))
         out[i] = total
 
 

@@ -21,7 +21,7 @@ TROUGHS = ((96, 12, 12), (96, 24, 16), (192, 16, 16))  # particles along x, y, z
 SHAPES = {"channel, 40 : 4 : 1": (40, 4, 1), "tank, 4 : 1 : 1": (4, 1, 1)}
 COUNTS = (10**7, 10**8, 10**9)
 NETWORK = {"latency": 2e-6, "bandwidth": 10e9}  # s, bytes/s between nodes: assumed for the predictions
-HALO_BYTES = 15 * 8  # of one halo particle in one step
+HALO_BYTES = 19 * 8  # of one halo particle in one step
 _LAYERS = 3.5  # spacings of one halo
 _STEPS, _EFFICIENT = 40, 0.7
 
