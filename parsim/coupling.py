@@ -6,6 +6,7 @@ import numpy as np
 
 from parsim.errors import InputError
 from parsim.jit import kernel
+from parsim.solid.acceleration import accelerate_bodies
 from parsim.solid.rotation import matrices
 from parsim.state import BODY, Particles, make_id
 
@@ -20,7 +21,7 @@ class BodySamples:
     """
 
     def __init__(self, case, bodies, layers):
-        self.bodies = bodies
+        self.bodies, self._gravity = bodies, np.array(case.gravity, float)
         self._spacing, self._planar = case.spacing, case.dimensions == 2
         self._axes, self._way_out = np.array(case.axes), _WAY_OUT * case.spacing / case.speed
         offsets, scales, owners = [], [], []
@@ -73,17 +74,37 @@ class BodySamples:
         place_samples(p.kind, p.body, p.sample, self.offsets, position, matrices(quaternion), b.velocity, b.spin,
                       b.acceleration, b.angular_acceleration, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az)
 
-    def loads(self, domain, near, force, centre, others, rows):
-        """Exact force and torque about `centre` (bodies, 3) on each body, N and N m, over all ranks: (bodies, 6).
+    def loads(self, domain, near, force, response, centre, others, rows):
+        """Sums over all ranks about `centre` (bodies, 3): loads, N and N m, films (3 arrays), added inertia.
 
-        `others` (n, 6) at `rows` (n,) are summed with them; the sums of rows beyond the bodies follow, by blocks of
-        (bodies, 6).
+        `force` (samples, 3), `response` (samples, 6): see `WCMPS.react`; `others` (n, 6) at `rows` (n,): see
+        `Films.loads`. Loads and films are (bodies, 6); the inertia that the water adds is (bodies, 24): the upper
+        triangle of a symmetric matrix of six by rows, kg, kg m and kg m2, then zeros.
         """
         p, at, count = domain.particles, near.body, len(centre)
-        each = np.empty((at.size, 6))
+        each, added = np.empty((at.size, 6)), np.empty((at.size, 24))
         levers(at, p.body, p.x, p.y, p.z, centre, force, each)
-        rows = np.concatenate([p.body[at].astype(np.int64), rows])
-        return np.split(domain.sum(np.concatenate([each, others]), rows, 4 * count), 4)
+        added_inertia(at, p.body, p.x, p.y, p.z, centre, response, added)
+        body = p.body[at].astype(np.int64)
+        rows = np.concatenate([body, rows, *(body + k * count for k in range(4, 8))])
+        values = np.concatenate([each, others, *np.split(added, 4, axis=1)])
+        load, *rims, a, b, c, d = np.split(domain.sum(values, rows, 8 * count), 8)
+        return load, rims, np.concatenate([a, b, c, d], axis=1)
+
+    def answer(self, p, near, position, quaternion, load, added, lever, time):
+        """Find the accelerations of the bodies, give the samples those and their pressures; loads (bodies, 6), N, N m.
+
+        The water's load is linear in a body's acceleration: `load` less `added` times its change. A load at the
+        acceleration of the step before, which is the explicit way, grows without end where the water near a body
+        outweighs it. Contacts count as they were in the step before.
+        """
+        b = self.bodies
+        change = np.zeros((len(b), 6))
+        accelerate_bodies(load, added, b.mass, b.inertia, matrices(quaternion), b.held(time), b.planar, self._gravity,
+                          b.contact_load, b.spin, b.acceleration, b.angular_acceleration, change)
+        respond(near.body, p.body, p.x, p.y, p.z, position, change, lever, p.p)
+        self.place(p, position, quaternion)
+        return load
 
     def find(self, domain, near):
         """Note, after a rebuild, which of this rank's water may meet a body."""
@@ -173,3 +194,39 @@ def levers(at, body, x, y, z, centre, force, out):
         out[row, 3] = dy * fz - dz * fy
         out[row, 4] = dz * fx - dx * fz
         out[row, 5] = dx * fy - dy * fx
+
+
+@kernel
+def added_inertia(at, body, x, y, z, centre, response, out):
+    """J^T S J of each sample `at`, S its `response`, J = (1, -[r]): upper triangles by rows of out (n, 24)."""
+    j, s = np.zeros((3, 6)), np.zeros((3, 3))
+    j[0, 0] = j[1, 1] = j[2, 2] = 1.0
+    for row in range(at.size):
+        i = at[row]
+        b = body[i]
+        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        j[0, 4], j[0, 5], j[1, 3], j[1, 5], j[2, 3], j[2, 4] = dz, -dy, -dz, dx, dy, -dx
+        s[0, 0], s[0, 1], s[0, 2], s[1, 1], s[1, 2], s[2, 2] = response[row]
+        s[1, 0], s[2, 0], s[2, 1] = s[0, 1], s[0, 2], s[1, 2]
+        k = 0
+        for a in range(6):
+            for c in range(a, 6):
+                total = 0.0
+                for e in range(3):
+                    for f in range(3):
+                        total += j[e, a] * s[e, f] * j[f, c]
+                out[row, k] = total
+                k += 1
+        out[row, 21:] = 0.0
+
+
+@kernel
+def respond(at, body, x, y, z, centre, change, lever, p):
+    """Pressure p of the samples `at` after the `change` (bodies, 6) of their bodies' accelerations; lever (n, 3)."""
+    for row in range(at.size):
+        i = at[row]
+        b = body[i]
+        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        c = change[b]
+        p[i] += (lever[row, 0] * (c[0] + c[4] * dz - c[5] * dy) + lever[row, 1] * (c[1] + c[5] * dx - c[3] * dz)
+                 + lever[row, 2] * (c[2] + c[3] * dy - c[4] * dx))

@@ -107,20 +107,23 @@ class Simulation:
         with self.timers("predict"):
             self._place(*self.bodies.drifted(0.5 * dt), time)
             self.scheme.predict(p, dt)
+        self.scheme.press(p, near)
+        load = None
+        if len(self.bodies.mass):
+            with self.timers("bodies"):
+                load = self._load(dt)
         self.scheme.accelerate(self.domain, near, dt)
-        with self.timers("bodies"):
-            return self._load(dt)
+        return load
 
     def _load(self, dt):
-        if not len(self.bodies.mass):
-            return None
-        centre, quaternion = self.bodies.drifted(0.5 * dt)
-        force, films = self.scheme.react(self.domain, self.near, dt), self.models.films
+        """Load of the water on the bodies for the accelerations that it gives them, which the samples then have."""
+        pose, films, samples = self.bodies.drifted(0.5 * dt), self.models.films, self.models.samples
+        force, lever, response = self.scheme.react(self.domain, self.near, dt)
         plate = self.gate.outline(self.time + 0.5 * dt) if self.gate else np.zeros(4)
-        added = films.loads(self.domain, self.near, plate, centre, quaternion)
-        load, *rims = self.models.samples.loads(self.domain, self.near, force, centre, *added)
+        added = films.loads(self.domain, self.near, plate, *pose)
+        load, rims, inertia = samples.loads(self.domain, self.near, force, response, pose[0], *added)
         films.keep(*rims)
-        return load
+        return samples.answer(self.domain.particles, self.near, *pose, load, inertia, lever, self.time)
 
     def _move(self, load, dt, keep):
         with self.timers("move"):

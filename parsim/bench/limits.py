@@ -52,7 +52,7 @@ def sweeps(simulation, calls):
 
     def momentum(index):
         kernels.momentum(*lists, index, *place, *flow, p.p, p.scale, lattice.weight, lattice.own, lattice.whole,
-                         scheme.close2, 1.0, 1.0, 1.0, *out)
+                         scheme.close2, 1.0, 1.0, 1.0, 1.0, *out)
 
     def continuity(index):
         kernels.continuity(*lists, index, *place, *flow, p.n, p.bx, p.by, p.bz, p.scale, lattice.weight,

@@ -51,9 +51,10 @@ def seventh_roots(y):
 
 @rows
 def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, gx, gy, gz, density, weight, p):
-    """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27).
+    """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27), by weights W / r2.
 
-    `ax, ay, az` hold the acceleration of the boundary sample itself.
+    With the weights of the pressure force itself, what the water adds to the inertia of a body is symmetric and never
+    negative (`reaction`). Not held above zero: that would make a force of noise. `ax, ay, az` hold the acceleration of the boundary sample itself.
     """
     for row in prange(at.size):
         i = at[row]
@@ -65,22 +66,23 @@ def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, gx, gy, gz,
             j = index[t]
             dx, dy, dz = xi - x[j], yi - y[j], zi - z[j]
             r2 = dx * dx + dy * dy + dz * dz
-            wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
-            every += wt
-            total += wt * (p[j] + hx * dx + hy * dy + hz * dz)
-        p[i] = max(total / every, 0.0) if every > 0.0 else 0.0
+            _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            every += g
+            total += g * (p[j] + hx * dx + hy * dy + hz * dz)
+        p[i] = total / every if every > 0.0 else 0.0
 
 
 @rows
 def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, scale, weight, own, whole, close2, push, drag, hit,
-             ax, ay, az, c, nx, ny, nz, bx, by, bz):
+             dt, ax, ay, az, c, nx, ny, nz, bx, by, bz):
     """Pair accelerations, concentration, inward normal and viscous sums of fluid particles.
 
     Pressure gradient of Mellado 2021, eq. 5.15, with constant volumes, push = d / (n0 rho0); viscosity in the
     angular-momentum conserving form, drag = 2 d (d + 2) nu / n0, fluid-fluid only, whose sums b are what the noise
     damping works on (`continuity`); off walls and bodies, the collision of eqs 5.38-5.39 with the sign corrected, as
-    the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2). Water does not collide with
-    water: shifting keeps it apart, and a collision takes energy from all that strains.
+    the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2), at the velocity that the
+    boundary has after dt. Water does not collide with water: shifting keeps it apart, and a collision takes energy from
+    all that strains.
     """
     for row in prange(at.size):
         i = at[row]
@@ -113,9 +115,13 @@ def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, scale, weight, 
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
             _, g, measure = weight_at(weight, r2, inverse)
-            approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
-            bounce = hit * inverse * inverse * min(approach, 0.0) if r2 < close2 else 0.0
-            f = (bounce - push * g * (pi + p[j])) * scale[j]
+            f = -push * g * (pi + p[j])
+            if r2 < close2:
+                approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
+                if approach < 0.0:
+                    approach += dt * (ax[j] * dx + ay[j] * dy + az[j] * dz)
+                    f += hit * inverse * inverse * approach
+            f *= scale[j]
             sx += f * dx
             sy += f * dy
             sz += f * dz
@@ -131,25 +137,51 @@ def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, scale, weight, 
 
 
 @rows
-def reaction(at, start, middle, index, x, y, z, u, v, w, p, scale, weight, close2, push, hit, out):
-    """Pair accelerations that body samples give back to the water they see, times -1: rows of out (samples, 3)."""
+def reaction(at, start, middle, index, x, y, z, u, v, w, ax, ay, az, p, scale, weight, density, close2, push, hit, dt,
+             out, lever, response):
+    """Pair accelerations that body samples give back to the water they see, times -1: rows of out (samples, 3).
+
+    They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `out` by
+    -`response` da, a symmetric matrix that is never negative, by its elements xx, xy, xz, yy, yz, zz (samples, 6).
+    Which pairs collide is told by the velocities at the start of the step.
+    """
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, pi, share = x[i], y[i], z[i], u[i], v[i], w[i], p[i], scale[i]
         sx, sy, sz = 0.0, 0.0, 0.0
+        every, mx, my, mz = 0.0, 0.0, 0.0, 0.0
+        xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
             _, g, _ = weight_at(weight, r2, inverse)
-            approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
-            bounce = hit * inverse * inverse * min(approach, 0.0) if r2 < close2 else 0.0
-            f = (bounce - push * g * (pi + p[j])) * share
+            every += g
+            mx += g * dx
+            my += g * dy
+            mz += g * dz
+            f = -push * g * (pi + p[j])
+            if r2 < close2:
+                approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
+                if approach < 0.0:
+                    approach -= dt * (ax[i] * dx + ay[i] * dy + az[i] * dz)
+                    e = hit * inverse * inverse
+                    f += e * approach
+                    e *= dt
+                    xx, xy, xz = xx + e * dx * dx, xy + e * dx * dy, xz + e * dx * dz
+                    yy, yz, zz = yy + e * dy * dy, yz + e * dy * dz, zz + e * dz * dz
+            f *= share
             sx += f * dx
             sy += f * dy
             sz += f * dz
         out[row, 0], out[row, 1], out[row, 2] = sx, sy, sz
+        e = density / every if every > 0.0 else 0.0
+        f = push * e
+        lever[row, 0], lever[row, 1], lever[row, 2] = e * mx, e * my, e * mz
+        response[row, 0], response[row, 1] = share * (xx + f * mx * mx), share * (xy + f * mx * my)
+        response[row, 2], response[row, 3] = share * (xz + f * mx * mz), share * (yy + f * my * my)
+        response[row, 4], response[row, 5] = share * (yz + f * my * mz), share * (zz + f * mz * mz)
 
 
 @rows

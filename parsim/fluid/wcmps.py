@@ -56,12 +56,15 @@ class WCMPS:
         kernels.predict(p.kind, p.surface, p.u, p.v, p.w, p.rate, 0.5 * dt, self.lattice.number, self.stiffness, p.x,
                         p.y, p.z, p.n, p.p)
 
-    def accelerate(self, domain, near, dt):
-        """Boundary pressures, then pair accelerations, concentration and surface of the fluid, at the half step."""
-        p, lattice = domain.particles, self.lattice
+    def press(self, p, near):
+        """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
             kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.ax, p.ay,
-                                      p.az, *self.gravity, self.density, lattice.weight, p.p)
+                                      p.az, *self.gravity, self.density, self.lattice.weight, p.p)
+
+    def accelerate(self, domain, near, dt):
+        """Pair accelerations, concentration and surface of the fluid at the half step."""
+        p, lattice = domain.particles, self.lattice
         with domain.refreshing("p"):
             self._momentum(p, near, near.inner, dt)
         self._momentum(p, near, near.border, dt)
@@ -74,16 +77,22 @@ class WCMPS:
         with self.timers("momentum"):
             kernels.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
                              p.scale, lattice.weight, lattice.own, self._whole, self.close2, self._push,
-                             self.viscosity * self._viscous, self._hit(dt), p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz,
+                             self.viscosity * self._viscous, self._hit(dt), dt, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz,
                              p.bx, p.by, p.bz)
 
     def react(self, domain, near, dt):
-        """Forces of the water on the body samples `near.body`, N: (samples, 3)."""
-        p, out = domain.particles, np.empty((near.body.size, 3))
-        kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p, p.scale,
-                         self.lattice.weight, self.close2, self._push, self._hit(dt), out)
+        """Forces of the water on the body samples `near.body`, N: (samples, 3), and how they depend on accelerations.
+
+        Also `lever` (samples, 3), Pa s2/m, and `response` (samples, 6), kg: see `kernels.reaction`.
+        """
+        p, count = domain.particles, near.body.size
+        out, lever, response = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6))
+        kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az,
+                         p.p, p.scale, self.lattice.weight, self.density, self.close2, self._push, self._hit(dt), dt,
+                         out, lever, response)
         out *= self.mass
-        return out
+        response *= self.mass
+        return out, lever, response
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""

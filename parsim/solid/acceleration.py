@@ -1,0 +1,79 @@
+"""Accelerations of bodies with the inertia that the water adds, solved at once: stable however light they are."""
+
+import math
+
+import numpy as np
+
+from parsim.jit import kernel
+
+
+@kernel
+def accelerate_bodies(load, added, mass, inertia, turn, held, planar, gravity, contact, spin, acceleration, angular,
+                      change):
+    """Solve (m + added) a = load + added a0 + gravity + contacts - gyroscopic torque for every body.
+
+    a0, then a: `acceleration`, `angular` (nb, 3); their difference: `change` (nb, 6), the `load` then less by added
+    times that. By Cholesky, for its bits are the same everywhere.
+    """
+    m, rhs = np.zeros((6, 6)), np.zeros(6)
+    water, own = np.zeros((6, 6)), np.zeros((3, 3))
+    for b in range(mass.size):
+        k = 0
+        for a in range(6):
+            for c in range(a, 6):
+                water[a, c] = water[c, a] = added[b, k]
+                k += 1
+        for a in range(3):
+            for c in range(3):
+                own[a, c] = 0.0
+                for e in range(3):
+                    own[a, c] += turn[b, a, e] * inertia[b, e] * turn[b, c, e]
+        hx, hy, hz = 0.0, 0.0, 0.0
+        for a in range(3):
+            hx += own[0, a] * spin[b, a]
+            hy += own[1, a] * spin[b, a]
+            hz += own[2, a] * spin[b, a]
+        p, q, r = spin[b]
+        gyro = (q * hz - r * hy, r * hx - p * hz, p * hy - q * hx)
+        for a in range(6):
+            total = load[b, a] + contact[b, a] + (mass[b] * gravity[a] if a < 3 else -gyro[a - 3])
+            for c in range(6):
+                total += water[a, c] * (acceleration[b, c] if c < 3 else angular[b, c - 3])
+                m[a, c] = water[a, c]
+            rhs[a] = total
+        for a in range(3):
+            m[a, a] += mass[b]
+            for c in range(3):
+                m[3 + a, 3 + c] += own[a, c]
+        for a in range(6):
+            if held[b] or (planar and (a == 1 or a == 3 or a == 5)):
+                m[a, :] = 0.0
+                m[:, a] = 0.0
+                m[a, a], rhs[a] = 1.0, 0.0
+        solve_positive(m, rhs)
+        for a in range(3):
+            change[b, a], change[b, 3 + a] = rhs[a] - acceleration[b, a], rhs[3 + a] - angular[b, a]
+            acceleration[b, a], angular[b, a] = rhs[a], rhs[3 + a]
+        for a in range(6):
+            for c in range(6):
+                load[b, a] -= water[a, c] * change[b, c]
+
+
+@kernel
+def solve_positive(m, x):
+    """Solve m y = x, m (n, n) symmetric and positive, in place: x (n,) becomes y, m its Cholesky factor."""
+    n = x.size
+    for a in range(n):
+        for c in range(a + 1):
+            total = m[a, c]
+            for e in range(c):
+                total -= m[a, e] * m[c, e]
+            m[a, c] = math.sqrt(total) if a == c else total / m[c, c]
+    for a in range(n):
+        for e in range(a):
+            x[a] -= m[a, e] * x[e]
+        x[a] /= m[a, a]
+    for a in range(n - 1, -1, -1):
+        for e in range(a + 1, n):
+            x[a] -= m[e, a] * x[e]
+        x[a] /= m[a, a]
