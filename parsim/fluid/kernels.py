@@ -54,7 +54,7 @@ def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, gx, gy, gz,
     """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27), by weights W / r2.
 
     With the weights of the pressure force itself, what the water adds to the inertia of a body is symmetric and never
-    negative (`reaction`). Not held above zero: that would make a force of noise. `ax, ay, az` hold the acceleration of the boundary sample itself.
+    negative (`reaction`). Not held above zero: noise would push. `ax, ay, az`: acceleration of the sample itself.
     """
     for row in prange(at.size):
         i = at[row]
