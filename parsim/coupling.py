@@ -100,7 +100,7 @@ class BodySamples:
         """
         b = self.bodies
         change = np.zeros((len(b), 6))
-        accelerate_bodies(load, added, b.mass, b.inertia, matrices(quaternion), b.held(time), b.planar, self._gravity,
+        accelerate_bodies(load, added, b.mass, b.inertia, quaternion, b.held(time), b.planar, self._gravity,
                           b.contact_load, b.spin, b.acceleration, b.angular_acceleration, change)
         respond(near.body, p.body, p.x, p.y, p.z, position, change, lever, p.p)
         self.place(p, position, quaternion)
@@ -199,7 +199,7 @@ def levers(at, body, x, y, z, centre, force, out):
 @kernel
 def added_inertia(at, body, x, y, z, centre, response, out):
     """J^T S J of each sample `at`, S its `response`, J = (1, -[r]): upper triangles by rows of out (n, 24)."""
-    j, s = np.zeros((3, 6)), np.zeros((3, 3))
+    j, s, sj = np.zeros((3, 6)), np.zeros((3, 3)), np.zeros((3, 6))
     j[0, 0] = j[1, 1] = j[2, 2] = 1.0
     for row in range(at.size):
         i = at[row]
@@ -208,14 +208,13 @@ def added_inertia(at, body, x, y, z, centre, response, out):
         j[0, 4], j[0, 5], j[1, 3], j[1, 5], j[2, 3], j[2, 4] = dz, -dy, -dz, dx, dy, -dx
         s[0, 0], s[0, 1], s[0, 2], s[1, 1], s[1, 2], s[2, 2] = response[row]
         s[1, 0], s[2, 0], s[2, 1] = s[0, 1], s[0, 2], s[1, 2]
+        for e in range(3):
+            for c in range(6):
+                sj[e, c] = s[e, 0] * j[0, c] + s[e, 1] * j[1, c] + s[e, 2] * j[2, c]
         k = 0
         for a in range(6):
             for c in range(a, 6):
-                total = 0.0
-                for e in range(3):
-                    for f in range(3):
-                        total += j[e, a] * s[e, f] * j[f, c]
-                out[row, k] = total
+                out[row, k] = j[0, a] * sj[0, c] + j[1, a] * sj[1, c] + j[2, a] * sj[2, c]
                 k += 1
         out[row, 21:] = 0.0
 

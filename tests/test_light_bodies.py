@@ -1,9 +1,13 @@
 """Bodies that weigh less than the water they move: the coupling must be stable for them at the default step."""
 
+import numpy as np
 import pytest
 
 from parsim.case import parse
 from parsim.comm import Comm
+from parsim.coupling import added_inertia
+from parsim.solid.acceleration import accelerate_bodies
+from parsim.solid.rotation import from_angles, matrices
 from parsim.solver import Simulation
 
 SQUARE, ADDED = 0.2, 1.18831  # m; added mass of a deep square over its displaced mass (1.513 pi / 4)
@@ -37,3 +41,40 @@ def test_a_block_starts_at_any_height_above_a_row_of_water(gap):
         simulation.step()
         fastest = max(fastest, abs(simulation.bodies.velocity[0, 2]))
     assert fastest < 1.1 * 9.81 * simulation.time
+
+
+def cross(v):
+    """Matrix of the cross product with v (3,) from the left."""
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+def test_accelerations_against_a_plain_solution():
+    """One turned body in 3D with three samples: the inertia that they add, and the equations of Newton and Euler."""
+    rng = np.random.default_rng(3)
+    place, centre, root = rng.normal(size=(3, 3)), rng.normal(size=(1, 3)), rng.normal(size=(3, 3, 3))
+    s = root @ root.transpose(0, 2, 1)
+    triangle = np.triu_indices(3)
+    added, water = np.empty((3, 24)), np.zeros((6, 6))
+    added_inertia(np.arange(3), np.zeros(3, np.int32), *place.T.copy(), centre, s[:, triangle[0], triangle[1]], added)
+    for k in range(3):
+        j = np.hstack([np.eye(3), -cross(place[k] - centre[0])])
+        water += j.T @ s[k] @ j
+    total = added.sum(0)
+    assert total[:21] == pytest.approx(water[np.triu_indices(6)], rel=1e-12)
+
+    mass, inertia, quaternion = np.array([0.3]), np.array([[0.2, 0.5, 0.4]]), from_angles((20.0, -50.0, 70.0))[None]
+    before, spin, load, contact = rng.normal(size=(6,)), rng.normal(size=(1, 3)), *rng.normal(size=(2, 1, 6))
+    gravity, turn = np.array([0.0, 0.0, -9.81]), matrices(quaternion)[0]
+    own = turn @ np.diag(inertia[0]) @ turn.T
+    rigid = np.block([[mass[0] * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), own]])
+    given = contact[0] + np.concatenate([mass[0] * gravity, -np.cross(spin[0], own @ spin[0])])
+    exact = np.linalg.solve(rigid + water, load[0] + water @ before + given)
+    for held in (False, True):
+        now, angular, change, left = before[None, :3].copy(), before[None, 3:].copy(), np.zeros((1, 6)), load.copy()
+        accelerate_bodies(left, total[None], mass, inertia, quaternion, np.array([held]), False, gravity, contact, spin,
+                          now, angular, change)
+        after = np.zeros(6) if held else exact
+        assert np.hstack([now, angular])[0] == pytest.approx(after, rel=1e-10, abs=1e-10)
+        assert change[0] == pytest.approx(after - before, rel=1e-10, abs=1e-10)
+        assert left[0] == pytest.approx(load[0] - water @ (after - before), rel=1e-10, abs=1e-10)
+    assert rigid @ exact == pytest.approx(load[0] - water @ (exact - before) + given, rel=1e-9, abs=1e-9)

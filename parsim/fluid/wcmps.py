@@ -1,8 +1,9 @@
 """Weakly compressible MPS (Mellado 2021, ch. 5; Jandaghian & Shakibaeinia 2020), explicit, symplectic in time.
 
-One momentum and one continuity sweep a step. A step is three calls, between which the bodies move: `predict` to the
-half step, `accelerate` there, `kick` and `finish` from there to the full step. Particles that see no halo are swept
-while the messages to the neighbouring slabs travel.
+One momentum and one continuity sweep a step. `predict` goes to the half step; there `press` finds the pressures of the
+boundary, `react` the load on the bodies, which get their accelerations, and `accelerate` those of the water; `kick` and
+`finish` go from there to the full step, once the bodies have moved. Particles that see no halo are swept while the
+messages to the neighbouring slabs travel.
 """
 
 import math

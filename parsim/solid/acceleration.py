@@ -5,36 +5,30 @@ import math
 import numpy as np
 
 from parsim.jit import kernel
+from parsim.solid.rotation import matrix, scaled
 
 
 @kernel
-def accelerate_bodies(load, added, mass, inertia, turn, held, planar, gravity, contact, spin, acceleration, angular,
-                      change):
+def accelerate_bodies(load, added, mass, inertia, quaternion, held, planar, gravity, contact, spin, acceleration,
+                      angular, change):
     """Solve (m + added) a = load + added a0 + gravity + contacts - gyroscopic torque for every body.
 
     a0, then a: `acceleration`, `angular` (nb, 3); their difference: `change` (nb, 6), the `load` then less by added
     times that. By Cholesky, for its bits are the same everywhere.
     """
     m, rhs = np.zeros((6, 6)), np.zeros(6)
-    water, own = np.zeros((6, 6)), np.zeros((3, 3))
+    water, unit = np.zeros((6, 6)), np.eye(3)
     for b in range(mass.size):
+        q = quaternion[b]
+        turn, own = matrix((q[0], q[1], q[2], q[3])), (inertia[b, 0], inertia[b, 1], inertia[b, 2])
         k = 0
         for a in range(6):
             for c in range(a, 6):
                 water[a, c] = water[c, a] = added[b, k]
                 k += 1
-        for a in range(3):
-            for c in range(3):
-                own[a, c] = 0.0
-                for e in range(3):
-                    own[a, c] += turn[b, a, e] * inertia[b, e] * turn[b, c, e]
-        hx, hy, hz = 0.0, 0.0, 0.0
-        for a in range(3):
-            hx += own[0, a] * spin[b, a]
-            hy += own[1, a] * spin[b, a]
-            hz += own[2, a] * spin[b, a]
-        p, q, r = spin[b]
-        gyro = (q * hz - r * hy, r * hx - p * hz, p * hy - q * hx)
+        wx, wy, wz = spin[b]
+        hx, hy, hz = scaled(turn, own, wx, wy, wz)
+        gyro = (wy * hz - wz * hy, wz * hx - wx * hz, wx * hy - wy * hx)
         for a in range(6):
             total = load[b, a] + contact[b, a] + (mass[b] * gravity[a] if a < 3 else -gyro[a - 3])
             for c in range(6):
@@ -43,8 +37,8 @@ def accelerate_bodies(load, added, mass, inertia, turn, held, planar, gravity, c
             rhs[a] = total
         for a in range(3):
             m[a, a] += mass[b]
-            for c in range(3):
-                m[3 + a, 3 + c] += own[a, c]
+            x, y, z = scaled(turn, own, unit[a, 0], unit[a, 1], unit[a, 2])
+            m[3, 3 + a], m[4, 3 + a], m[5, 3 + a] = m[3, 3 + a] + x, m[4, 3 + a] + y, m[5, 3 + a] + z
         for a in range(6):
             if held[b] or (planar and (a == 1 or a == 3 or a == 5)):
                 m[a, :] = 0.0
