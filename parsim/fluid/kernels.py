@@ -50,11 +50,11 @@ def seventh_roots(y):
 
 
 @rows
-def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, gx, gy, gz, density, weight, p):
+def boundary_pressure(at, start, middle, index, body, x, y, z, ax, ay, az, gx, gy, gz, density, weight, p):
     """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27), by weights W / r2.
 
-    With the weights of the pressure force itself, what the water adds to the inertia of a body is symmetric and never
-    negative (`reaction`). Not held above zero: noise would push. `ax, ay, az`: acceleration of the sample itself.
+    With the weights of the pressure force, what water adds to the inertia of a body is symmetric and never negative.
+    Walls do not pull, or water gets in; bodies do, or noise lifts them. `ax, ay, az`: acceleration of the sample.
     """
     for row in prange(at.size):
         i = at[row]
@@ -69,7 +69,8 @@ def boundary_pressure(at, start, middle, index, x, y, z, ax, ay, az, gx, gy, gz,
             _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             every += g
             total += g * (p[j] + hx * dx + hy * dy + hz * dz)
-        p[i] = total / every if every > 0.0 else 0.0
+        mean = total / every if every > 0.0 else 0.0
+        p[i] = mean if body[i] >= 0 else max(mean, 0.0)
 
 
 @rows
@@ -80,9 +81,8 @@ def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, scale, weight, 
     Pressure gradient of Mellado 2021, eq. 5.15, with constant volumes, push = d / (n0 rho0); viscosity in the
     angular-momentum conserving form, drag = 2 d (d + 2) nu / n0, fluid-fluid only, whose sums b are what the noise
     damping works on (`continuity`); off walls and bodies, the collision of eqs 5.38-5.39 with the sign corrected, as
-    the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2), at the velocity that the
-    boundary has after dt. Water does not collide with water: shifting keeps it apart, and a collision takes energy from
-    all that strains.
+    the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2), at the boundary's
+    velocity after dt. Water does not collide with water: shifting keeps it apart, collisions brake all that strains.
     """
     for row in prange(at.size):
         i = at[row]

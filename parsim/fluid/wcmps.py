@@ -60,8 +60,8 @@ class WCMPS:
     def press(self, p, near):
         """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
-            kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.ax, p.ay,
-                                      p.az, *self.gravity, self.density, self.lattice.weight, p.p)
+            kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, p.ax,
+                                      p.ay, p.az, *self.gravity, self.density, self.lattice.weight, p.p)
 
     def accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
