@@ -10,7 +10,7 @@ from parsim.state import DETACHED, SURFACE
 
 @kernel
 def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
-    """Kinetic, potential and elastic energy, J, and mass, kg, of each fluid particle `at`: rows of out (n, 4).
+    """Kinetic, potential and elastic energy, J, and m / rho over m / rho0 of each fluid particle `at`: out (n, 4).
 
     Elastic: what the pair forces put into n, the integral of p / (rho0 s) over s = n / n0 of the state,
     c0^2 / 7 ((s^7 - 1) / 7 - ln s).
@@ -22,7 +22,7 @@ def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
         out[row, 0] = 0.5 * mass * (u[i] * u[i] + v[i] * v[i] + w[i] * w[i])
         out[row, 1] = -mass * (gx * x[i] + gy * y[i] + gz * z[i])
         out[row, 2] = mass * sound2 / 7.0 * ((s2 * s2 * s2 * s - 1.0) / 7.0 - math.log(s))
-        out[row, 3] = mass
+        out[row, 3] = 1.0 / s
 
 
 @kernel

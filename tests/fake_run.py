@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from parsim.output import frames
-from parsim.output.series import Table
+from parsim.output.series import TABLES, Table
 
 TANK, LEVEL, GATE, BLOCK = np.array([0.70, 0.15, 0.30]), 0.15, 0.15, np.array([0.0725, 0.0725, 0.0195])
 NAMES = ("A1", "A2", "B1", "B2")
@@ -17,8 +17,6 @@ START = np.array([[0.038, 0.037, 0], [0.112, 0.037, 0], [0.038, 0.113, 0], [0.11
 REACH = np.array([0.16, 0.52, 0.18, 0.54])
 FACES = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
 CORNERS = np.array([[i, j, k] for k in (-0.5, 0.5) for j in (-0.5, 0.5) for i in (-0.5, 0.5)])
-POSE = [("step", "-"), ("time", "s"), ("body", "-"), *zip("xyz", "mmm", strict=True)]
-POSE += [(f"q{i}", "-") for i in range(4)] + [(n, "m/s") for n in "uvw"] + [(f"spin_{n}", "rad/s") for n in "xyz"]
 
 
 def height(x, time):
@@ -132,27 +130,23 @@ def make(folder, spacing=0.015, times=None, series=0.02):
     return folder
 
 
-def _table(folder, name, columns, rows):
-    table = Table(folder / f"{name}.csv", *map(list, zip(*columns, strict=True)))
+def _table(folder, name, rows, units=None):
+    table = Table(folder / f"{name}.csv", units or TABLES[name])
     for row in rows:
         table.row(*row)
     table.close()
 
 
 def _series(folder, times):
-    clock = [("step", "-"), ("time", "s")]
-    energies = ["kinetic_water", "potential_water", "elastic_water", "kinetic_bodies", "potential_bodies"]
-    energies += ["elastic_contacts", "work_gate", "total"]
     kinetic = 0.6 * np.exp(-((times - 0.3) ** 2) / 0.1) * (times > 0)
     potential = 2.5 - 1.06 * kinetic - 0.3 * np.clip(times, 0, 1)
     rows = [
-        (i, t, 1e-4, k, p, 0.01 * k, 0.05 * k, 0.3, 0.0, 0.001 * k, k * 1.06 + p + 0.3)
+        (i, t, 1e-4, k, p, 0.01 * k, 0.05 * k, 0.3, 0.0, 0.001 * k, 0.0, k * 1.06 + p + 0.3)
         for i, (t, k, p) in enumerate(zip(times, kinetic, potential, strict=True))
     ]
-    _table(folder, "energy", [*clock, ("dt", "s"), *((name, "J") for name in energies)], rows)
-    names = "fluid active all in_walls in_bodies in_gate lost surface volume".split()
+    _table(folder, "energy", rows)
     rows = [(i, t, 1000, 1200, 3000, 0, 0, 0, 0, 200, 3.375e-3 * (1 + 0.002 * t)) for i, t in enumerate(times)]
-    _table(folder, "counts", [*clock, *((name, "-") for name in names[:-1]), ("volume", "m3")], rows)
+    _table(folder, "counts", rows)
     bodies, loads, gauges, front = [], [], [], []
     for i, t in enumerate(times):
         centre, quaternion = poses(t)
@@ -161,12 +155,9 @@ def _series(folder, times):
             loads += [(i, t, name, kind, 0.1 * t, 0.0, size, 0.0, 0.0, 0.0) for kind, size in LOADS]
         gauges += [(i, t, "wall", 0.69, 0.075, float(height(0.69, t)))]
         front.append((i, t, min(0.15 + 1.35 * max(t, 0), 0.695)))
-    _table(folder, "bodies", POSE, bodies)
-    forces = [(n, "N") for n in ("fx", "fy", "fz")] + [(n, "N m") for n in ("tx", "ty", "tz")]
-    _table(folder, "loads", [*clock, ("body", "-"), ("kind", "-"), *forces], loads)
-    _table(folder, "gauges", [*clock, ("gauge", "-"), ("x", "m"), ("y", "m"), ("level", "m")], gauges)
-    _table(folder, "front", [*clock, ("x", "m")], front)
-    _table(folder, "timings", [*clock, ("wall", "s")], [(i, t, 0.01 * i) for i, t in enumerate(times)])
+    for name, rows in (("bodies", bodies), ("loads", loads), ("gauges", gauges), ("front", front)):
+        _table(folder, name, rows)
+    _table(folder, "timings", [(i, t, 0.01 * i) for i, t in enumerate(times)], {"step": "-", "time": "s", "wall": "s"})
 
 
 LOADS = (("water", 0.87), ("contact", 0.0), ("gravity", -0.87))

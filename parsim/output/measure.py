@@ -20,7 +20,7 @@ class Measure:
         self.gauges = np.array([[g.x, middle if g.y is None else g.y] for g in case.output.gauges]).reshape(-1, 2)
 
     def rows(self, simulation):
-        """Rows of every series: name -> list of rows, without step and time."""
+        """Rows of every series but "lost": name -> list of rows, without step and time."""
         return {
             "energy": [self._energy(simulation)],
             "counts": [self._counts(simulation)],
@@ -34,7 +34,8 @@ class Measure:
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 4))
         diagnostics.energies(at, p.x, p.y, p.z, p.u, p.v, p.w, p.n, s.scheme.mass, *self.case.gravity,
                              s.scheme.lattice.number, s.scheme.sound**2, out)
-        kinetic, potential, elastic, self.mass = (float(value) for value in s.domain.sum(out))
+        kinetic, potential, elastic, volume = (float(value) for value in s.domain.sum(out))
+        self.volume = volume * s.scheme.lattice.volume  # of m / rho, not of N
         b, c = s.bodies, s.contacts
         parts = [kinetic, potential, elastic, b.kinetic_energy(), b.potential_energy(self.case.gravity),
                  c.elastic_energy()]
@@ -49,7 +50,7 @@ class Measure:
         surface = diagnostics.count_surface(at, p.surface)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, surface)
         every = fluid + len(s.models.walls) + len(s.models.samples)
-        return [fluid, s.active, every, *rest, self.mass / self.case.water.density]
+        return [fluid, s.active, every, *rest, self.volume]
 
     def _front(self, s):
         p, width = s.domain.particles, 2.0 * self.case.spacing

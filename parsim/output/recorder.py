@@ -82,11 +82,9 @@ class Recorder:
             self.watch(simulation)
 
     def _open_tables(self):
-        self.tables, step = {}, self.resumed["step_count"] if self.resumed else None
-        for name, (columns, units) in TABLES.items():
-            columns = ["step", "time", *(["dt"] if name == "energy" else []), *columns.split()]
-            self.tables[name] = Table(self.out / "series" / f"{name}.csv", columns,
-                                      ["-", "s", *[units] * (len(columns) - 2)], resume=step)
+        step = self.resumed["step_count"] if self.resumed else None
+        self.tables = {name: Table(self.out / "series" / f"{name}.csv", units, resume=step)
+                       for name, units in TABLES.items()}
 
     def account(self, simulation):
         """What a restart must know of the outputs as they are now."""
@@ -189,7 +187,7 @@ class Recorder:
         for table in self.tables.values():
             table.close()
         self.progress.close(words, simulation.step_count, simulation.time)
-        counts = dict(zip(TABLES["counts"][0].split(), rows["counts"][0], strict=True))
+        counts = dict(zip(list(TABLES["counts"])[2:], rows["counts"][0], strict=True))
         cores = self.info["ranks"] * self.info["threads"]
         self._end(words.split()[0], **facts, **{
             "steps": simulation.step_count, "time": simulation.time, "wall_s": wall,

@@ -10,34 +10,49 @@ from pathlib import Path
 from parsim.errors import WriteError
 from parsim.output.frames import write_text
 
+_CLOCK = {"step": "-", "time": "s"}
+# the columns of every series, in their order, with their units
 TABLES = {
-    "energy": ("kinetic_water potential_water elastic_water kinetic_bodies potential_bodies elastic_contacts "
-               "work_gate dissipated_contacts total", "J"),
-    "counts": ("fluid active all in_walls in_bodies in_gate lost surface volume", "-"),
-    "bodies": ("body x y z q0 q1 q2 q3 u v w spin_x spin_y spin_z", "m, m/s, rad/s"),
-    "loads": ("body kind fx fy fz tx ty tz", "N, N m"),
-    "gauges": ("gauge x y level", "m"),
-    "front": ("x", "m"),
-    "lost": ("id x y z u v w", "m, m/s"),
-}
+    name: _CLOCK | columns
+    for name, columns in {
+        "energy": {
+            "dt": "s", "kinetic_water": "J", "potential_water": "J", "elastic_water": "J", "kinetic_bodies": "J",
+            "potential_bodies": "J", "elastic_contacts": "J", "work_gate": "J", "dissipated_contacts": "J",
+            "total": "J",
+        },
+        "counts": {
+            "fluid": "-", "active": "-", "all": "-", "in_walls": "-", "in_bodies": "-", "in_gate": "-", "lost": "-",
+            "surface": "-", "volume": "m3",
+        },
+        "bodies": {
+            "body": "-", "x": "m", "y": "m", "z": "m", "q0": "-", "q1": "-", "q2": "-", "q3": "-",
+            "u": "m/s", "v": "m/s", "w": "m/s", "spin_x": "rad/s", "spin_y": "rad/s", "spin_z": "rad/s",
+        },
+        "loads": {
+            "body": "-", "kind": "-", "fx": "N", "fy": "N", "fz": "N", "tx": "N m", "ty": "N m", "tz": "N m",
+        },
+        "gauges": {"gauge": "-", "x": "m", "y": "m", "level": "m"},
+        "front": {"x": "m"},
+        "lost": {"id": "-", "x": "m", "y": "m", "z": "m", "u": "m/s", "v": "m/s", "w": "m/s"},
+    }.items()
+}  # fmt: skip
 
 
 class Table:
     """A CSV file that grows row by row; rows wait in memory until :meth:`flush`.
 
-    Floats are written in the shortest form that reads back to the same bits. ``columns`` begin with "step".
+    Floats are written in the shortest form that reads back to the same bits. ``units`` is the unit of each column by
+    name, in the columns' order, "step" first.
     With ``resume`` (a step) an existing file is continued: its rows after that step are dropped first, so that a
     resumed run leaves the file that an uninterrupted one would. All methods raise WriteError.
     """
 
-    def __init__(self, path, columns, units, resume=None):
-        if len(columns) != len(units):
-            raise ValueError(f"{len(columns)} columns with {len(units)} units")
-        self.path, self.columns = Path(path), list(columns)
+    def __init__(self, path, units, resume=None):
+        self.path, self.columns = Path(path), list(units)
         self._waiting = io.StringIO()
         self._writer = csv.writer(self._waiting, lineterminator="\n")
         kept = _rows_until(self.path, resume) if resume is not None else []
-        titles = ["# units: " + ", ".join(units), ",".join(columns)]
+        titles = ["# units: " + ", ".join(units.values()), ",".join(units)]
         write_text(self.path, "\n".join([*titles, *kept]) + "\n")
         self._file = self._guarded(lambda: open(self.path, "a", encoding="utf-8"))
 
