@@ -129,15 +129,12 @@ def _numba():
 
 
 def _cache():
-    from parsim import jit  # noqa: F401  (sets NUMBA_CACHE_DIR, and takes a second: only here)
+    try:
+        from parsim import jit  # noqa: F401  (sets NUMBA_CACHE_DIR, and takes a second: only here)
+    except InputError as error:
+        return Finding("Kernel cache", "none", str(error), "set NUMBA_CACHE_DIR to a folder that only you can write")
 
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError as error:
-        remedy = "set NUMBA_CACHE_DIR to a folder you can write, else every start compiles anew"
-        return Finding("Kernel cache", str(folder), f"not writable: {error.strerror}", remedy)
     others = folder.parent.iterdir() if folder.parent.name == "parsim" else ()
     stale = [other for other in others if other.is_dir() and other != folder]
     waste = sum(_size(other) for other in stale)

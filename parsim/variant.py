@@ -16,7 +16,7 @@ from difflib import get_close_matches
 from importlib.metadata import version
 from pathlib import Path
 
-from parsim import __version__, launch
+from parsim import __version__, launch, private
 from parsim.errors import InputError
 
 # features added to the host's; the gather instruction is slower than scalar loads on many hosts, by microcode, and
@@ -123,33 +123,39 @@ def mark(folder):
 
 
 def _cache():
-    """Folder for the machine code: the first that holds it or can be written, of the user's and a temporary one."""
+    """Folder for the machine code: the first that is this user's alone and holds it or can be written.
+
+    Code of another user would run if it were loaded. Raises InputError where there is no such folder.
+    """
     given = os.environ.get("NUMBA_CACHE_DIR")
     first = Path(given) if given else _folder()
     if re.fullmatch("[0-9a-f]{16}", first.name):  # the parent process has been here, maybe with another variant
         first = first.parent
-    first, folder = first / code(), None
-    for folder in (first, _spare() / code()):
-        if mark(folder).exists() or _writable(folder):
-            break
-    if folder != first and launch.world()[0] == 0:
-        print(f"warning: the kernel cache {first} can be neither read nor written; using {folder}", file=sys.stderr,
-              flush=True)
-    return folder
+    reasons = []
+    for folder in dict.fromkeys((first, _folder(), _spare())):
+        try:
+            found = _usable(folder / code())
+        except OSError as error:
+            reasons.append(f"{error.filename or folder} {error.strerror}")
+            continue
+        if reasons and launch.world()[0] == 0:
+            print(f"warning: the kernel cache is not used: {reasons[0]}; using {found}", file=sys.stderr, flush=True)
+        return found
+    raise InputError("NUMBA_CACHE_DIR: no folder for the kernel cache that this user alone can write: "
+                     f"{'; '.join(reasons)}; name one")
 
 
 def _spare():
     return Path(tempfile.gettempdir(), f"parsim-{os.geteuid()}")
 
 
-def _writable(folder):
-    """Whether files can be made in `folder`, which is made, by this user alone."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+def _usable(folder):
+    """`folder`, made if need be, as this user's alone; OSError if it is not, or holds no code and cannot be written."""
+    folder = private.folder(folder)
+    if not mark(folder).exists():
         with tempfile.TemporaryFile(dir=folder):
-            return folder.stat().st_uid == os.geteuid()
-    except OSError:
-        return False
+            pass
+    return folder
 
 
 def _folder():

@@ -1,9 +1,12 @@
-"""What several test files need: jobs of several ranks that cannot hang."""
+"""What several test files need: jobs of several ranks that cannot hang, a folder like /tmp."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -63,3 +66,12 @@ def mpirun():
         return subprocess.CompletedProcess(line, process.returncode, out, err)
 
     return run
+
+
+@pytest.fixture
+def public():
+    """A folder that everybody may put things into, as /tmp."""
+    folder = Path(tempfile.mkdtemp(dir="/tmp"))
+    folder.chmod(0o1777)
+    yield folder
+    shutil.rmtree(folder)

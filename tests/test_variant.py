@@ -3,13 +3,13 @@
 import json
 import os
 import pickle
-import shutil
 import subprocess
 import sys
 import zlib
 from pathlib import Path
 
 import pytest
+from strangers import NOBODY, as_root, give_away
 
 import parsim
 from parsim import probe, variant, warm
@@ -116,17 +116,72 @@ def test_a_damaged_cache_is_made_anew(tmp_path, monkeypatch):
     assert "compiling" not in run_once(tmp_path / "cache", tmp_path / "three", monkeypatch).stdout
 
 
-def test_a_cache_that_cannot_be_written_is_replaced_with_a_warning(tmp_path, monkeypatch):
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    """A user's cache folder that holds the machine code of this process: spares a test the compilation."""
+    warm.prepare()
+    (tmp_path / "home").mkdir(mode=0o700)
+    (tmp_path / "home" / "parsim").symlink_to(Path(os.environ["NUMBA_CACHE_DIR"]).parent)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
+def run_with(cache, out, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache))
+    line = [sys.executable, "-m", "parsim", "run", CASE, "-o", out, "--until", "0.01"]
+    return subprocess.run(line, capture_output=True, text=True)
+
+
+def test_a_cache_that_cannot_be_written_is_replaced_with_a_warning(home, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("in the way")
-    (tmp_path / f"parsim-{os.geteuid()}").mkdir(mode=0o700)
-    variant.apply()
-    cache = Path(os.environ["NUMBA_CACHE_DIR"])  # of this process: spares the test a compilation
-    shutil.copytree(cache, tmp_path / f"parsim-{os.geteuid()}" / cache.name)
-    ran = run_once(tmp_path / "file", tmp_path / "out", monkeypatch)
+    ran = run_with(tmp_path / "file", tmp_path / "out", monkeypatch)
     assert ran.returncode == 0, ran.stderr
-    assert "can be neither read nor written; using" in ran.stderr
-    assert list(tmp_path.glob("parsim-*/*/complete-*"))
+    assert f"{tmp_path / 'file' / home.name} Not a directory; using {home}" in ran.stderr
+    assert "compiling" not in ran.stdout
+
+
+def test_without_any_cache_of_ones_own_the_variable_is_named(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("in the way")
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(name, str(tmp_path / "file"))
+    monkeypatch.setattr(variant, "_spare", lambda: tmp_path / "file")
+    monkeypatch.setenv(variant.NAME, variant.possible()[0])
+    with pytest.raises(InputError, match="NUMBA_CACHE_DIR: no folder for the kernel cache that this user alone"):
+        variant._cache()
+
+
+class Poison:
+    """What makes a folder when it is unpickled."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def __reduce__(self):
+        return os.mkdir, (str(self.folder),)
+
+
+@as_root
+@pytest.mark.parametrize("name", ["given", "spare"])
+def test_a_cache_that_another_user_has_made_is_never_loaded(name, home, public, tmp_path, monkeypatch):
+    """All that parsim asks of a complete cache, with code in it that would show if it ran."""
+    poison = public / ("given" if name == "given" else f"parsim-{os.geteuid()}")
+    loaded = tmp_path / "loaded"
+    for index in home.rglob("*.nbi"):
+        file = poison / home.name / index.relative_to(home)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(pickle.dumps(Poison(loaded)))
+    variant.mark(poison / home.name).write_text("{}")
+    give_away(poison)
+    if name == "spare":
+        monkeypatch.setenv("XDG_CACHE_HOME", "/dev/null")
+        monkeypatch.setenv("TMPDIR", str(public))
+        ran = run_with("/dev/null", tmp_path / "out", monkeypatch)
+        assert ran.returncode == 2 and "error: NUMBA_CACHE_DIR: no folder for the kernel cache" in ran.stderr
+    else:
+        ran = run_with(poison, tmp_path / "out", monkeypatch)
+        assert ran.returncode == 0, ran.stderr
+        assert f"{poison} belongs to user {NOBODY}; using {home}" in ran.stderr
+    assert not loaded.exists()
 
 
 def test_a_mark_vouches_for_the_files_it_was_made_for(tmp_path):
