@@ -1,5 +1,6 @@
 """Checks of a case's bodies, materials, gate and gauges. Each takes a completed case and returns messages."""
 
+import math
 from difflib import get_close_matches
 
 from parsim import case_geometry as geometry
@@ -92,6 +93,22 @@ def _outside(case, body):
                 f"position = {list(body.position)}: outside the box, reaches from {name} = {low[axis]:.6g} to "
                 f"{high[axis]:.6g}; allowed {least!r} to {most!r}"
             )
+
+
+def speeds(case):
+    """Nothing solid starts or is driven as fast as the sound of the model."""
+    if case.speed <= 0.0:
+        return []
+    found = [(f"bodies.{body.name}.velocity, spin", _fastest(body)) for body in case.bodies]
+    if case.gate:
+        found.append(("gate.speed", case.gate.speed))
+    return [f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
+            "which is water.sound times water.speed" for key, speed in found if not speed < case.sound_speed]
+
+
+def _fastest(body):
+    """Bound of the speed of any point of a body at the start, m/s."""
+    return math.hypot(*body.velocity) + math.hypot(*body.spin) * 0.5 * math.hypot(*body.shape.size)
 
 
 def overlaps(case):

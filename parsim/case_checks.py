@@ -12,7 +12,8 @@ from parsim.errors import InputError
 def checked(case, messages):
     """`case` completed. Raises InputError with `messages` and everything else that is wrong."""
     case, faults = _completed(case)
-    of_bodies = (bodies.names, bodies.materials, bodies.bodies, bodies.overlaps, bodies.gate, bodies.gauges)
+    of_bodies = (bodies.names, bodies.materials, bodies.bodies, bodies.speeds, bodies.overlaps, bodies.gate,
+                 bodies.gauges)
     for check in (_spacing, _box, _faces, _fill, _speed, *of_bodies):
         faults += check(case)
     if messages or faults:

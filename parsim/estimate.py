@@ -47,8 +47,10 @@ def estimate(case):
 
 
 def time_step(case):
-    """Time step at the largest expected speed, s: CFL l0 / (c0 + u) (Mellado 2021, eq. 5.18)."""
-    return case.run.cfl * case.spacing / (case.sound_speed + case.speed)
+    """Time step at the largest expected speed, s."""
+    from parsim.fluid.wcmps import WCMPS  # brings numba along, whose settings a run makes first
+
+    return WCMPS(case).time_step(case.speed)
 
 
 def lines(case, ranks):

@@ -1,13 +1,15 @@
 """What ends a run that has gone wrong: what happened, which particles or body, where, and what may help."""
 
+import math
+
 import numpy as np
 
 from parsim.errors import RunError
 
 _SHOWN = 5  # particles in a message
 _COLLAPSED = 1e-3  # of the longest time step
-_HINT = ("The frame written now shows the place. Usual causes: water.speed (here {speed:.3g} m/s) is less than the "
-         "water reaches, bodies overlap at the start, or run.cfl is too large")
+_EARLY = 20  # steps in which the start is to blame
+_HARD = 0.1  # of the speed of sound that a contact gives a body in one step
 
 
 def runaway(simulation):
@@ -22,7 +24,7 @@ def runaway(simulation):
     told = [f"body {name}" for name in bodies[:_SHOWN]] + [_particle(row) for row in rows[:_SHOWN]]
     more = len(rows) + len(bodies) - len(told)
     text = (f"{_when(s)}: faster than the speed of sound of the model, {s.scheme.sound:.4g} m/s, or not a number: "
-            + "; ".join(told) + (f"; and {more} more" if more > 0 else "") + ". " + _hint(s))
+            + "; ".join(told) + (f"; and {more} more" if more > 0 else "") + ". " + _likely(s))
     return RunError(s.comm.share(text))
 
 
@@ -31,9 +33,13 @@ def collapsed(simulation, dt):
     s = simulation
     if dt > _COLLAPSED * s.scheme.time_step(0.0):
         return None
-    name, speed = s.bodies.fastest()
-    return RunError(f"{_when(s)}: the time step has come down to {dt:.3g} s, for body {name} moves at {speed:.4g} m/s. "
-                    + _hint(s))
+    text = f"{_when(s)}: the time step has come down to {dt:.3g} s, for "
+    if s.contacts.limit() <= dt or s.speed > s.case.speed:
+        name, speed = s.bodies.fastest()
+        text += f"body {name} moves at {speed:.4g} m/s. "
+    else:
+        text += f"a body is accelerated by {s.bodies.surface_acceleration():.4g} m/s2. "
+    return RunError(text + _likely(s))
 
 
 def outside(simulation, rows):
@@ -52,5 +58,25 @@ def _particle(row):
     return f"particle {int(row[0])} at ({place}) m with ({speed}) m/s"
 
 
-def _hint(simulation):
-    return _HINT.format(speed=simulation.case.speed)
+def _likely(simulation):
+    """What may be the cause, that which there are signs of first."""
+    s, case, b = simulation, simulation.case, simulation.bodies
+    speed = f"water.speed = {case.speed:.4g} m/s is less than the water or a body reaches"
+    start = "what is there at the start is too close: bodies to each other, to walls or to the water"
+    step = f"run.cfl = {case.run.cfl:g} is too large"
+    signs = []
+    if s.step_count < _EARLY:
+        signs.append(start)
+    if case.speed < s.speed < s.scheme.sound:
+        signs.append(f"{speed}: {s.speed:.4g} m/s in the step before")
+    if b.names:
+        kick = np.sqrt((b.contact_load[:, :3] ** 2).sum(1)) / b.mass * s.dt
+        if (hit := int(np.argmax(kick))) >= 0 and kick[hit] > _HARD * s.scheme.sound:
+            force = math.sqrt((b.contact_load[hit, :3] ** 2).sum())
+            signs.append(f"body {b.names[hit]} is in a contact of {force:.4g} N: contacts.steps_per_contact = "
+                         f"{case.contacts.steps_per_contact} is too few, or its material too stiff")
+    if case.run.cfl > 1.0:
+        signs.append(step)
+    others = [text for text in (speed, start, step) if not any(sign.startswith(text) for sign in signs)]
+    first = f"Most likely {'; or '.join(signs)}. Else " if signs else "Most likely "
+    return f"{first}{'; or '.join(others)}. The frame written now shows the place"

@@ -1,5 +1,6 @@
 """The time loop: what happens in a step, when lists are rebuilt, when things are written, when the run stops."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +35,7 @@ class Simulation:
         self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
         self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
         self._uneven, self.gone = [0.0, 1.0, 0], []  # sum, most and number of looks
+        self._weight = math.hypot(*case.gravity)
         self._damping = case.speed / case.depth if case.depth else 0.0
         if snapshot is None:
             self.domain.cut_evenly(*columns(case))
@@ -79,7 +81,8 @@ class Simulation:
         return self._outrun(self._next_dt())
 
     def _next_dt(self):
-        return min(self.scheme.time_step(self.speed), self.contacts.limit())
+        acceleration = max(self._weight, self.bodies.surface_acceleration())
+        return min(self.scheme.time_step(self.speed, acceleration), self.contacts.limit())
 
     def step(self):
         """Advance water and bodies by one time step."""
@@ -195,7 +198,8 @@ class Simulation:
             fastest, moved = self.scheme.extremes(self.domain.particles, self.near, self._start)
         with self.timers("sums"):
             fastest, moved = map(float, self.domain.max(fastest, moved))
-        solid = max(self.bodies.surface_speed(), self.gate.velocity(self.time) if self.gate else 0.0)
+        soon = self.time + self.scheme.time_step(fastest)  # a gate that is about to rise counts
+        solid = max(self.bodies.surface_speed(), self.gate.velocity(soon) if self.gate else 0.0)
         if not max(fastest, solid) < self.scheme.sound:
             raise guards.runaway(self)
         self._solid_moved += self.dt * solid

@@ -14,10 +14,10 @@ class Lattice:
     """Constants of the full square or cubic lattice for one weight (Mellado 2021, eqs 5.4, 5.12).
 
     Attributes: dimensions; spacing, m; radius re, m; weight: parameters for `weight_at`; count, the number of
-    neighbours; number n0, the sum of W; spread lambda, m2, the W-mean of r2; own, a particle's measure of itself;
-    whole, the sum of the measure with it; cut: what a flat surface that leaves one row above a particle cuts off of
-    that, over the length of the sum of measure times e that is cut off with it, e towards the neighbours; lowest,
-    highest: the concentrations between which a particle may be at the surface.
+    neighbours; number n0, the sum of W; spread lambda, m2, the W-mean of r2; slopes, 1/m2, the sum of W / r2; own, a
+    particle's measure of itself; whole, the sum of the measure with it; cut: what a flat surface that leaves one row
+    above a particle cuts off of that, over the length of the sum of measure times e that is cut off with it, e towards
+    the neighbours; lowest, highest: the concentrations between which a particle may be at the surface.
     """
 
     def __init__(self, dimensions, spacing, support, name):
@@ -27,6 +27,7 @@ class Lattice:
         self.count = len(points)
         self.number = math.fsum(w for w, _, _, _ in points)
         self.spread = math.fsum(w * r * r for w, _, r, _ in points) / self.number
+        self.slopes = math.fsum(w / (r * r) for w, _, r, _ in points)
         self.whole = self.own + math.fsum(m for _, m, _, _ in points)
         lost = [(m, m * up / r) for _, m, r, up in points if up > 1.5 * spacing]
         self.cut = math.fsum(m for m, _ in lost) / math.fsum(e for _, e in lost)

@@ -35,6 +35,9 @@ class WCMPS:
         self.viscosity, self.noise_damping = water.viscosity, water.noise_damping
         self.mass = water.density * self.lattice.volume
         self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
+        stiffest = 2.0 * self._viscous * lattice.slopes / lattice.dimensions
+        # 1/s: how fast viscosity and noise damping end what changes from particle to particle
+        self._fading = stiffest * (self.viscosity + self.noise_damping * self.sound * lattice.spacing**3 * stiffest)
         self.loosest = 0.5 / water.sound**2  # the stagnation pressure of the largest expected speed
         gravity = math.hypot(*case.gravity)
         # so much closer than the lattice does the model's water lie under half its depth: thus a fill keeps its level
@@ -44,9 +47,23 @@ class WCMPS:
         self._down, self._slope = np.array(case.gravity) / (gravity or 1.0), gravity / self.sound**2
         self.close2 = (water.collision_distance * case.spacing) ** 2
 
-    def time_step(self, speed):
-        """Stable time step, s, at the largest speed, m/s (Mellado 2021, eq. 5.18)."""
-        return self.cfl * self.lattice.spacing / (self.sound + speed)
+    def time_step(self, speed, acceleration=0.0):
+        """Stable time step, s, at the largest speed, m/s (Mellado 2021, eq. 5.18), and acceleration, m/s2.
+
+        Within it viscosity and noise damping together take no more than all of what changes from particle to particle,
+        and nothing is accelerated over more than a spacing.
+        """
+        spacing = self.lattice.spacing
+        limits = [self.cfl * self._passage(speed)]
+        if self._fading > 0.0:
+            limits.append(1.0 / self._fading)
+        if acceleration > 0.0:
+            limits.append(math.sqrt(2.0 * spacing / acceleration))
+        return min(limits)
+
+    def _passage(self, speed):
+        """Time, s, in which sound at the largest speed, m/s, passes a spacing."""
+        return self.lattice.spacing / (self.sound + speed)
 
     def number_at(self, pressure):
         """Number density (n,) at pressures (n,), Pa >= 0: the inverse state."""
@@ -126,7 +143,7 @@ class WCMPS:
 
     def _continuity(self, p, near, at, speed):
         lattice = self.lattice
-        spread = self.diffusion * self.sound**2 * self.time_step(speed) / self.cfl * self._laplacian
+        spread = self.diffusion * self.sound**2 * self._passage(speed) * self._laplacian
         with self.timers("continuity"):
             kernels.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                                p.bx, p.by, p.bz, p.scale, lattice.weight, lattice.number, self._gradient, spread,
@@ -136,7 +153,7 @@ class WCMPS:
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
         mach = min(speed / self.sound, _LARGEST_MACH)
-        factor = 2.0 * lattice.spacing**2 * self.cfl * mach * self._gradient
+        factor = 2.0 * lattice.spacing**2 * dt / self._passage(speed) * mach * self._gradient
         surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
                       p.scale, p.body, domain.near(SURFACE, "surface"), lattice.weight, lattice.radius,
                       (_BESIDE * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,

@@ -75,6 +75,11 @@ class Bodies:
         """Bound of the speed of any point of any body, m/s: |v| + |w| R."""
         return float(largest_speed(self.half, self.velocity, self.spin))
 
+    def surface_acceleration(self):
+        """Bound of the acceleration of any point of any body in the last step, m/s2: |a| + (|dw/dt| + |w|^2) R."""
+        a, turn, w = (np.sqrt((v * v).sum(1)) for v in (self.acceleration, self.angular_acceleration, self.spin))
+        return float(np.max(a + (turn + w * w) * np.sqrt((self.half**2).sum(1)), initial=0.0))
+
     def at_fault(self, limit):
         """Names of the bodies that are not slower than `limit`, m/s, at every point."""
         return [name for name, speed in zip(self.names, self._speeds(), strict=True) if not speed < limit]
