@@ -75,7 +75,7 @@ class Films:
         if self._period < math.inf:
             apart[:, :, 0] -= self._period * np.rint(apart[:, :, 0] / self._period)
         close = ((apart**2).sum(2) < span**2) & ~np.eye(len(size), dtype=bool)
-        self._others = np.nonzero(close)[1]
+        self._others = np.ascontiguousarray(np.nonzero(close)[1])  # a column of pairs, or the kernel compiles anew
         self._first = np.concatenate([[0], np.cumsum(close.sum(1))])
 
     def loads(self, domain, near, plate, position, quaternion):

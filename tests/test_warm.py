@@ -1,0 +1,96 @@
+"""What is compiled, and when: the compiler's process makes all that a run needs, so that a run compiles nothing."""
+
+import json
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from example_cases import ROOT
+
+from parsim.case import parse
+from parsim.errors import InputError
+
+CASES = sorted(path for path in (ROOT / "cases").rglob("*.toml") if path.name[0] != "_")
+COARSE = {"ice_release": 0.01}  # m, for a first look
+DRAWN = 40
+
+
+def compiled(cases):
+    """The kernels that each case compiles once the cache is whole: a list of lists of names."""
+    line = [sys.executable, Path(__file__).with_name("compiled.py")]
+    done = subprocess.run(line, input=json.dumps(cases), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def drawn(dice):
+    """A small valid case with anything in it, as a dict; most are of a few hundred particles."""
+    while True:
+        case = _drawn(dice)
+        try:
+            parse(case)
+            return case
+        except InputError:
+            continue
+
+
+def _drawn(dice):
+    flat, width = dice.random() < 0.4, 1.0
+    if not flat:
+        width = dice.choice((0.06, 0.1))
+    faces = {side: dice.choice(("wall", "wall", "open")) for side in ("x_min", "x_max", "z_max")}
+    for axis in "x" if flat else "xy":
+        if dice.random() < 0.25:
+            faces |= {f"{axis}_min": "periodic", f"{axis}_max": "periodic"}
+    level = dice.choice((0.02, 0.05, 0.08))
+    fill = {"min": [0.0, 0.0, 0.0], "max": [0.2, width, level]}
+    if dice.random() < 0.3:
+        fill |= {"velocity": [0.1, 0.0, 0.0], "profile": {"kind": dice.choice(("linear", "log")), "roughness": 0.001}}
+    case = {
+        "dimensions": 2 if flat else 3, "spacing": 0.01, "box": {"max": [0.4, width, 0.2], "faces": faces},
+        "water": {"fill": dice.choice(([fill], [fill], [])), "speed": 1.5, "disorder": dice.choice((0.0, 0.1)),
+                  "weight": dice.choice(("wendland_c4", "wendland_c2", "mps")), "shifting": dice.random() < 0.8},
+        "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
+        "run": {"until": 1.0, "settle": dice.choice((0.0, 0.1))},
+        "bodies": [_block(dice, number, width) for number in range(dice.choice((0, 0, 1, 2, 3, 5, 80)))],
+    }  # fmt: skip
+    if "periodic" in faces.values():  # which no body may come near
+        case["bodies"] = []
+    if dice.random() < 0.4:
+        case["gate"] = {"min_x": 0.2, "max_x": 0.205, "opens": dice.choice((0.0, 0.5))}
+    if dice.random() < 0.5:
+        case["output"] = {"gauges": [{"name": "one", "x": 0.05}]}
+    return case
+
+
+def _block(dice, number, width):
+    """A block in a row of them that may touch, stand alone, lie under water or be held."""
+    size = 0.015
+    row, at = divmod(number, 10)
+    place = [0.02 + at * dice.choice((size, size, 0.018)), 0.5 * width, 0.01 + 0.02 * row + dice.choice((0.0, -0.0021))]
+    return {"name": f"b{number}", "shape": {"size": [size, 1.0 if width == 1.0 else 0.04, size]},
+            "density": dice.choice((300.0, 2000.0)), "position": place, "material": "wood",
+            "angles": [0.0, dice.choice((0.0, 0.0, 20.0)), 0.0],
+            **dice.choice(({}, {}, {"fixed": True}, {"released": 0.5}))}  # fmt: skip
+
+
+def test_no_case_drawn_at_random_compiles_anything():
+    dice = random.Random(1)
+    cases = [drawn(dice) for _ in range(DRAWN)]
+    bodies = [len(case["bodies"]) for case in cases]
+    assert {0, 1, 2} <= set(bodies) and max(bodies) > 2 and any("gate" in case for case in cases)
+    assert [names for names in compiled(cases) if names] == []
+
+
+def test_no_example_compiles_anything():
+    wanted = [[str(path), [f"spacing={COARSE[path.parent.name]}"] if path.parent.name in COARSE else []]
+              for path in CASES]
+    assert dict(zip(map(str, CASES), compiled(wanted), strict=True)) == {str(path): [] for path in CASES}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_no_example_compiles_anything_as_it_is(path):
+    assert compiled([[str(path), []]]) == [[]]
