@@ -150,11 +150,11 @@ def test_mpirun_does_not_hear_what_a_scheduler_sends_to_all(program):
 
 
 def test_signals_that_nohup_ignores_stay_ignored():
-    heard = []
-    with launch.heeding(lambda number, _: heard.append(number)):
-        os.kill(os.getpid(), signal.SIGHUP)
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    heard, before = [], signal.signal(signal.SIGHUP, signal.SIG_DFL)  # the tests may have been started with nohup
     try:
+        with launch.heeding(lambda number, _: heard.append(number)):
+            os.kill(os.getpid(), signal.SIGHUP)
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
         with launch.heeding(lambda number, _: heard.append(number)):
             os.kill(os.getpid(), signal.SIGHUP)
             os.kill(os.getpid(), signal.SIGTERM)
