@@ -1,11 +1,14 @@
 """Checks of a case's bodies, materials, gate and gauges. Each takes a completed case and returns messages."""
 
 import math
-from difflib import get_close_matches
+
+import numpy as np
 
 from parsim import case_geometry as geometry
+from parsim.case_fill import TOUCH, water_at
+from parsim.errors import nearest, suggestion
 
-TOUCH = 1e-9  # m: a smaller overlap is rounding
+GAUGE_REACH = 1.5  # spacings: a gauge reads the highest water within this distance
 
 
 def thinnest(case, body):
@@ -38,13 +41,12 @@ def materials(case):
     uses = [(f"bodies.{body.name}.material", body.material) for body in case.bodies]
     if case.wall_material is not None:
         uses.append(("wall_material", case.wall_material))
-    return [f'{key} = "{name}": {_nearest(name, case.materials)}' for key, name in uses if name not in case.materials]
+    return [f'{key} = "{name}": {_unknown(name, case.materials)}' for key, name in uses if name not in case.materials]
 
 
-def _nearest(name, known):
-    near = get_close_matches(name, known, 1)
-    meant = f'; did you mean "{near[0]}"?' if near else ""
-    return f"no such material; allowed: {', '.join(known) or 'none, [materials.NAME] is missing'}{meant}"
+def _unknown(name, known):
+    allowed = ", ".join(known) or "none, [materials.NAME] is missing"
+    return f"no such material; allowed: {allowed}{suggestion(nearest(name, known))}"
 
 
 def bodies(case):
@@ -168,3 +170,32 @@ def gauges(case):
         for axis, value in enumerate((gauge.x, gauge.y))
         if not case.box.min[axis] <= value <= case.box.max[axis]
     ]
+
+
+def blocked_gauges(case):
+    """Names of the gauges that bodies, walls and gate leave no room to read the water level at the start."""
+    solids = [geometry.of_body(body) for body in placed(case)] + ([_gate_box(case)] if case.gate else [])
+    return [gauge.name for gauge in case.output.gauges if not _readable(case, gauge, solids)]
+
+
+def _readable(case, gauge, solids):
+    """Whether a particle at the level could stand within the reach of a gauge, or there is no water at it."""
+    water = water_at(case.water.fill, gauge.x, gauge.y)
+    if water is None:
+        return True
+    # particles stand half a spacing from what is solid
+    half, steps = 0.5 * case.spacing, case.spacing * np.linspace(-GAUGE_REACH, GAUGE_REACH, 61)
+    x, y = np.meshgrid(gauge.x + steps, gauge.y + steps if case.dimensions == 3 else gauge.y)
+    within = (x - gauge.x) ** 2 + (y - gauge.y) ** 2 <= (GAUGE_REACH * case.spacing) ** 2
+    places = np.stack([x[within], y[within], np.full(within.sum(), water[1])], axis=1)
+    free = np.ones(len(places), bool)
+    for axis in case.axes[:-1]:
+        for side, place, sign in (("min", case.box.min[axis], 1.0), ("max", case.box.max[axis], -1.0)):
+            wall = getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall"
+            free &= sign * (places[:, axis] - place) >= (half if wall else 0.0) - TOUCH
+    spot = np.array([gauge.x, gauge.y, water[1]])
+    for solid in solids:
+        if np.any(np.abs(solid.centre - spot) > solid.reach + 2.0 * GAUGE_REACH * case.spacing):
+            continue
+        free &= geometry.clearance(solid, places) >= half - TOUCH
+    return bool(free.any())

@@ -4,8 +4,7 @@ import math
 from fractions import Fraction
 
 from parsim import case_bodies as bodies
-from parsim import case_geometry as geometry
-from parsim.case_messages import short
+from parsim import case_fill as fills
 from parsim.errors import InputError
 
 
@@ -14,7 +13,7 @@ def checked(case, messages):
     case, faults = _completed(case)
     of_bodies = (bodies.names, bodies.materials, bodies.bodies, bodies.speeds, bodies.overlaps, bodies.gate,
                  bodies.gauges)
-    for check in (_spacing, _box, _faces, _fill, _speed, *of_bodies):
+    for check in (_spacing, _box, _faces, fills.faults, _speed, *of_bodies):
         faults += check(case)
     if messages or faults:
         raise InputError([*messages, *faults])
@@ -27,11 +26,16 @@ def doubts(case):
     for body in case.bodies:
         if (across := bodies.particles_across(case, body)) < 4:
             thin.setdefault((across, bodies.thinnest(case, body)), []).append(body.name)
-    return [
+    told = [
         f"bodies.{names[0]}{f' and {len(names) - 1} more' if names[1:] else ''}: {across} particles across the "
         f"thinnest side, {side!r} m; four or more give usable loads"
         for (across, side), names in thin.items()
     ]
+    return told + [
+        f"output.gauges.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
+        f"{case.spacing!r} m; until they move it reads the water under them"
+        for name in bodies.blocked_gauges(case)
+    ] + fills.doubts(case)
 
 
 def _completed(case):
@@ -56,20 +60,20 @@ def _completed(case):
 def _floated(case, body):
     """`body` at the height where it floats level, by Archimedes."""
     x, y, _ = body.position
-    under = [f for f in case.water.fill if f.min[0] <= x <= f.max[0] and f.min[1] <= y <= f.max[1]]
-    if not under:
+    water = fills.water_at(case.water.fill, x, y)
+    if water is None:
         raise ValueError(f"no fill under its centre x = {x!r}, y = {y!r}")
     if body.angles[0] or body.angles[1]:
         raise ValueError(f"its faces must be level, but angles = {list(body.angles)}; give z as a number")
     if (body.density is None) == (body.mass is None):
         raise ValueError("needs its density or its mass")
-    fill, thickness = max(under, key=lambda fill: fill.max[2]), body.shape.size[2]
+    (bottom, level), thickness = water, body.shape.size[2]
     draught = thickness * case.density_of(body) / case.water.density
     if draught >= thickness:
         raise ValueError(f"density {case.density_of(body):.6g} kg/m3 does not float; must be below that of the water")
-    if draught > fill.max[2] - fill.min[2]:
-        raise ValueError(f"draught {draught:.6g} m is more than the depth of the fill under it")
-    return body.model_copy(update={"position": (x, y, fill.max[2] - draught + thickness / 2)})
+    if draught > level - bottom:
+        raise ValueError(f"draught {draught:.6g} m is more than the depth of water there, {level - bottom:.6g} m")
+    return body.model_copy(update={"position": (x, y, level - draught + thickness / 2)})
 
 
 def _spacing(case):
@@ -130,58 +134,6 @@ def _faces(case):
     if case.dimensions == 2 and (faces.y_min, faces.y_max) != ("wall", "wall"):
         faults.append(f'box.faces.y_min, y_max = "{faces.y_min}", "{faces.y_max}": a 2D case has none; leave them out')
     return faults
-
-
-def _fill(case):
-    faults = []
-    for i, fill in enumerate(case.water.fill):
-        faults += [f"water.fill.{i}.{text}" for text in (*_fill_faults(case, fill), *_profile_faults(fill))]
-    faults += _fill_overlaps(case.water.fill)
-    return faults
-
-
-def _fill_faults(case, fill):
-    low, high = case.box.min, case.box.max
-    for axis, name in enumerate("xyz"):
-        if not fill.min[axis] < fill.max[axis]:
-            yield f"max = {list(fill.max)}: empty, {name} must be greater than that of min = {list(fill.min)}"
-        for key, value in (("min", fill.min[axis]), ("max", fill.max[axis])):
-            if not low[axis] - bodies.TOUCH <= value <= high[axis] + bodies.TOUCH:
-                yield f"{key} = {list(getattr(fill, key))}: {name} is outside the box, {low[axis]!r} to {high[axis]!r}"
-    if case.dimensions == 2 and (fill.min[1], fill.max[1]) != (0.0, 1.0):
-        yield f"min, max: y = {fill.min[1]!r} to {fill.max[1]!r}: must be 0 to 1 in a 2D case"
-
-
-def _profile_faults(fill):
-    """What a profile lacks, or has too much of, for its kind."""
-    profile, depth = fill.profile, fill.max[2] - fill.min[2]
-    if profile is None:
-        return
-    if profile.kind == "log" and profile.roughness is None:
-        yield 'profile.roughness: missing; required for kind = "log"'
-    elif profile.kind == "log" and not profile.roughness < 10.0 * depth:
-        limit = f"{10.0 * depth:.6g} m"
-        yield f"profile.roughness = {profile.roughness!r}: must be less than ten depths of the fill, {limit}"
-    if profile.kind == "table":
-        ascending = all(low < high for low, high in zip(profile.heights, profile.heights[1:], strict=False))
-        if len(profile.heights) < 2 or not ascending:
-            yield f"profile.heights = {short(list(profile.heights))}: must be two or more, ascending"
-        if len(profile.shares) != len(profile.heights):
-            yield f"profile.shares: {len(profile.shares)} entries for {len(profile.heights)} heights; must be as many"
-    used = {"linear": {"bottom"}, "log": {"roughness"}, "table": {"heights", "shares"}}[profile.kind]
-    given = [key for key, field in type(profile).model_fields.items() if getattr(profile, key) != field.default]
-    for key in given:
-        if key not in used | {"kind"}:
-            yield f'profile.{key}: not used by kind = "{profile.kind}"; allowed with it: {", ".join(sorted(used))}'
-
-
-def _fill_overlaps(fills):
-    boxes = [geometry.upright(fill.min, fill.max) for fill in fills]
-    return [
-        f"water.fill.{j}: overlaps water.fill.{i}"
-        for i, j, shift in geometry.near_pairs(boxes)
-        if geometry.overlap(boxes[i], boxes[j]) > bodies.TOUCH
-    ]
 
 
 def _speed(case):

@@ -1,10 +1,10 @@
 """Case files as nested dicts: reading with `extends`, replacing single values, writing TOML."""
 
 import json
+import re
 import tomllib
-from difflib import get_close_matches
 
-from parsim.errors import InputError
+from parsim.errors import InputError, nearest, suggestion
 
 
 def read(path, inside=()):
@@ -24,10 +24,12 @@ def read(path, inside=()):
 
 
 def _parsed(path):
+    text = ""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8-sig")  # editors of Windows begin a file with a byte order mark
+        return tomllib.loads(text)
     except FileNotFoundError:
-        raise InputError(f"{path}: no such file{_nearest_file(path)}") from None
+        raise InputError(f"{path}: no such file{suggestion(_nearest_file(path))}") from None
     except IsADirectoryError:
         raise InputError(f"{path}: is a folder; a case is a TOML file") from None
     except OSError as error:
@@ -35,16 +37,37 @@ def _parsed(path):
     except UnicodeDecodeError:
         raise InputError(f"{path}: is not a text file in UTF-8; a case is a TOML file") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not valid TOML: {error}") from None
+        raise InputError(f"{path}: not valid TOML: {_given_twice(text, str(error)) or error}") from None
+
+
+def _given_twice(text, reason):
+    """Which key of a TOML text is there twice and on which line, where that is what tomllib means; else None."""
+    found = re.search(r"(overwrite|twice|namespace|inline table key '(.*)').* \(at line (\d+), ", reason)
+    if not found:
+        return None
+    last, lines = int(found[3]), text.split("\n")
+    heads = [re.match(r"\s*\[\[?\s*([^\[\]]+?)\s*\]", line) for line in lines[:last]]
+    if heads[-1]:
+        return f"{heads[-1][1]} is given twice, again on line {last}"
+    if found[2]:
+        return f"{found[2]} is given twice in the table between braces that ends on line {last}"
+    for first in reversed(range(last)):  # a value may go over several lines, and the fault is where it ends
+        try:
+            tomllib.loads("\n".join(lines[first:last]))
+        except ValueError:
+            continue
+        table = next((head[1] + "." for head in reversed(heads) if head), "")
+        return f"{table}{lines[first].partition('=')[0].strip()} is given twice, again on line {first + 1}"
+    return None
 
 
 def _nearest_file(path):
+    """The case file beside `path` whose name is like that of `path`, or None."""
     try:
-        names = [p.name for p in path.parent.glob("*.toml")]
+        stems = {p.stem: p for p in path.parent.glob("*.toml")}
     except OSError:
-        return ""
-    near = get_close_matches(path.name, names, 1, 0.75) or get_close_matches(path.name + ".toml", names, 1, 0.75)
-    return f"; did you mean {path.parent / near[0]}?" if near else ""
+        return None
+    return stems.get(nearest(path.name.removesuffix(".toml"), stems))
 
 
 def _merged(below, above):

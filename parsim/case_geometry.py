@@ -40,6 +40,12 @@ def of_body(body):
     return TurnedBox(np.array(body.position), np.array(body.shape.size) / 2, rotation(body.angles))
 
 
+def clearance(box, points):
+    """Distance (n,) of points (n, 3) from a box, m; 0 inside."""
+    over = np.maximum(np.abs((points - box.centre) @ box.axes) - box.half, 0.0)
+    return np.sqrt((over**2).sum(axis=1))
+
+
 def upright(low, high):
     """The box between the corners `low` and `high`, (3,)."""
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)

@@ -1,12 +1,11 @@
 """What is wrong with a case file's keys and values, in words: key path, value, what is allowed, nearest name."""
 
 from copy import deepcopy
-from difflib import get_close_matches
 from typing import get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from parsim.errors import InputError
+from parsim.errors import InputError, nearest, suggestion
 
 _ALLOWED = {
     "missing": "missing",
@@ -53,14 +52,13 @@ def _mended(model, data, place):
     value = table.pop(place[-1])
     known = list(_model_at(model, place[:-1]).model_fields)
     path = key_path(data, place)
-    near = get_close_matches(place[-1], known, 1, cutoff=0.7)
-    if near:
-        table.setdefault(near[0], value)
-        return f"{path}: unknown key; did you mean {key_path(data, (*place[:-1], near[0]))}?"
+    meant = nearest(place[-1], known)
+    if meant is not None:
+        table.setdefault(meant, value)
+        return f"{path}: unknown key{suggestion(key_path(data, (*place[:-1], meant)))}"
     elsewhere = dict(_all_keys(model))
-    near = get_close_matches(place[-1], elsewhere, 1, cutoff=0.8)
-    hint = f"; did you mean {elsewhere[near[0]]}?" if near else ""
-    return f"{path}: unknown key{hint or '; allowed: ' + ', '.join(known)}"
+    meant = nearest(place[-1], elsewhere, 0.8)
+    return f"{path}: unknown key{suggestion(elsewhere.get(meant)) or '; allowed: ' + ', '.join(known)}"
 
 
 def _described(model, data, faults):

@@ -1,5 +1,6 @@
-"""The errors that a user can cause, with the exit code each one ends in."""
+"""The errors that a user can cause, with the exit code each one ends in, and what was perhaps meant instead."""
 
+from difflib import get_close_matches
 
 _LONGEST = 1000  # characters of a message
 
@@ -25,6 +26,16 @@ class WriteError(Exception):
 
     def __str__(self):
         return f"cannot write {self.path}: {self.reason}"
+
+
+def nearest(name, known, likeness=0.7):
+    """The one among the texts `known` that is most like the text `name`, None where none is: 1 would be the same."""
+    return next(iter(get_close_matches(name, known, 1, likeness)), None)
+
+
+def suggestion(meant):
+    """The words that end a message about a name, "; did you mean ...?"; none where `meant` is None."""
+    return "" if meant is None else f"; did you mean {meant}?"
 
 
 def _line(message):

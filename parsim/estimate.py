@@ -1,4 +1,4 @@
-"""What a case will cost, from its lattice alone: particles, memory, steps, hours. Nothing is built for it."""
+"""What a case will cost, from its lattice alone: particles, memory, steps, time, disk. Nothing is built for it."""
 
 import math
 from dataclasses import dataclass
@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from parsim import case_geometry as geometry
-from parsim.state import FIELDS
+from parsim.state import FIELDS, WATER_BYTES
 
 RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine
 FIELD_BYTES = 2 * sum(np.dtype(field.dtype).itemsize for field in FIELDS)  # twice: sorting writes into new arrays
 LIST_ROOM = 1.2  # bytes of the neighbour rows over those of the full lattice
 _PROBES = 12  # per edge of a body, to see how much of it is in the water
 RANK_BYTES = 300e6  # Python, Numba and its machine code
+_FRAME_BYTES, _BODY_BYTES = 90, 2000  # in a frame: of a particle, of a body
+_ROW_BYTES, _BODY_ROW_BYTES = 600, 900  # of all series, and of each body in them
 
 
 @dataclass(frozen=True)
@@ -53,9 +55,18 @@ def time_step(case):
     return WCMPS(case).time_step(case.speed)
 
 
+def disk(case):
+    """Bytes on the disk that the frames, the series and the checkpoints of a case will take, about."""
+    water, bodies, time = estimate(case).water, len(case.bodies), case.run.until - case.start
+    frames = math.ceil(time / case.output.frames + 2.0) * (_FRAME_BYTES * water + _BODY_BYTES * bodies)
+    series = time / case.output.series * (_ROW_BYTES + _BODY_ROW_BYTES * bodies)
+    milestones = math.ceil(time / case.output.milestones) if case.output.milestones else 0
+    return frames, series, WATER_BYTES * water * (3.0 + milestones)  # one is written before one is removed
+
+
 def lines(case, ranks):
     """The estimate in words, for `ranks` ranks of one core each."""
-    cost = estimate(case)
+    cost, parts = estimate(case), disk(case)
     each, all_of_them = (f"on each of {ranks} ranks", f"on {ranks} ranks") if ranks > 1 else ("on one rank",) * 2
     return [
         f"particles  about {cost.water:,} water, {cost.wall:,} wall, {cost.body:,} body, {cost.gate:,} gate; "
@@ -63,13 +74,15 @@ def lines(case, ranks):
         f"steps      {cost.steps:,} of {time_step(case):.3g} s, from {case.start:g} to {case.run.until:g} s",
         f"memory     {_memory(cost, ranks)} {each}",
         f"time       {_duration(cost, ranks)} {all_of_them}, if a core makes {RATE:,} active particle-steps per second",
+        "disk       {}: {} of frames, {} of series, {} of checkpoints".format(*map(_size, (sum(parts), *parts))),
     ]
 
 
 def brief(case, ranks):
     """The estimate for one of `ranks` ranks, on one line."""
     cost = estimate(case)
-    return f"{cost.active:,} active particles, {cost.steps:,} steps, {_memory(cost, ranks)}, {_duration(cost, ranks)}"
+    return (f"{cost.active:,} active particles, {cost.steps:,} steps, {_memory(cost, ranks)}, "
+            f"{_duration(cost, ranks)}, {_size(sum(disk(case)))} on the disk")
 
 
 def _memory(cost, ranks):
@@ -77,8 +90,18 @@ def _memory(cost, ranks):
 
 
 def _duration(cost, ranks):
-    hours = cost.active * cost.steps / (RATE * ranks) / 3600
-    return f"{hours:.1f} hours" if hours >= 1 else f"{max(1, round(60 * hours))} minutes"
+    seconds = cost.active * cost.steps / (RATE * ranks)
+    if seconds >= 3600:
+        return f"{seconds / 3600:.1f} hours"
+    if seconds >= 100:
+        return f"{round(seconds / 60)} minutes"
+    return f"{math.ceil(seconds)} seconds" if seconds > 1 else "1 second"
+
+
+def _size(count):
+    """A number of bytes in words."""
+    unit, word = next((unit, word) for unit, word in ((1e9, "GB"), (1e6, "MB"), (0.0, "kB")) if count >= unit)
+    return f"{count / (unit or 1e3):.1f} {word}"
 
 
 def _count(case, lengths):

@@ -6,6 +6,7 @@ import numpy as np
 
 from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall import Walls
+from parsim.case_fill import level_over, profile_shares
 from parsim.cells import HALO, REACH, Grid
 from parsim.coupling import BodySamples
 from parsim.domain import Domain
@@ -102,7 +103,9 @@ def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
 
 
 def _particles(case, scheme, fill, points, idents):
-    depth = (fill.max[2] - points[:, 2]) if case.water.pressure == "hydrostatic" else np.zeros(len(points))
+    depth = np.zeros(len(points))
+    if case.water.pressure == "hydrostatic":
+        depth = level_over(case.water.fill, fill, points[:, 0], points[:, 1]) - points[:, 2]
     pressure = case.water.density * -case.gravity[2] * depth
     return Particles(
         len(points), id=make_id(FLUID, idents), kind=FLUID, x=points[:, 0], y=points[:, 1], z=points[:, 2],
@@ -122,20 +125,3 @@ def flow(case, p):
         share = profile_shares(fill, p.z[at])
         for name, speed in zip(("u", "v", "w"), fill.velocity, strict=True):
             getattr(p, name)[at] = speed * share
-
-
-def profile_shares(fill, z):
-    """The velocity at heights z (n,) over the mean of the fill: (n,).
-
-    Logarithmic: u ~ ln(30 z / ks) above a fully rough bed (Nikuradse 1933), whose mean over the depth H is
-    ln(30 H / ks) - 1 + ks / (30 H), for nothing flows backward below ks / 30.
-    """
-    above, depth, profile = z - fill.min[2], fill.max[2] - fill.min[2], fill.profile
-    if profile is None:
-        return np.ones(z.size)
-    if profile.kind == "linear":
-        return profile.bottom + 2.0 * (1.0 - profile.bottom) * above / depth
-    if profile.kind == "table":
-        return np.interp(above, profile.heights, profile.shares)
-    rough = profile.roughness / 30.0
-    return np.log(np.maximum(above / rough, 1.0)) / (math.log(depth / rough) - 1.0 + rough / depth)

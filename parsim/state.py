@@ -58,6 +58,7 @@ FIELDS = (
 NAMES = tuple(field.name for field in FIELDS)
 KEPT = tuple(field.name for field in FIELDS if field.kept)
 OF_WATER = ("id", *POSITION, *VELOCITY, "n", "rate", "surface")  # kept fields that differ between particles of water
+WATER_BYTES = sum(np.dtype(field.dtype).itemsize for field in FIELDS if field.name in OF_WATER)  # kept, of a particle
 _DTYPES = {field.name: field.dtype for field in FIELDS}
 _DEFAULTS = {"body": -1, "sample": -1, "scale": 1.0}
 

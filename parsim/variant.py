@@ -12,12 +12,11 @@ import platform
 import re
 import sys
 import tempfile
-from difflib import get_close_matches
 from importlib.metadata import version
 from pathlib import Path
 
 from parsim import __version__, launch, private
-from parsim.errors import InputError
+from parsim.errors import InputError, nearest, suggestion
 
 # features added to the host's; the gather instruction is slower than scalar loads on many hosts, by microcode, and
 # without AVX-512 vectors are 256 bits long
@@ -50,9 +49,8 @@ def possible():
 def checked(name):
     """`name` if this processor can run that variant; InputError otherwise."""
     if name not in possible():
-        near = get_close_matches(name, possible(), 1, cutoff=0.0)
-        raise InputError(f"kernel = {name}: not a variant of this processor; possible: {', '.join(possible())}; "
-                         f"nearest: {near[0]}")
+        raise InputError(f"kernel = {name}: not a variant of this processor; possible: {', '.join(possible())}"
+                         + suggestion(nearest(name, possible())))
     return name
 
 

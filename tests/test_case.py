@@ -25,7 +25,8 @@ def base(tmp_path):
 @pytest.mark.parametrize("file", FILES, ids=NAMES)
 def test_case_files_are_valid_and_read_back_equal(tmp_path, file):
     case = load(file)
-    assert case.warnings() == []
+    thin_bed = ["water.fill.1: 2 particles along z, 0.01 m"] if file.stem.endswith("_10mm") else []
+    assert [warning.split(";")[0] for warning in case.warnings()] == thin_bed
     (tmp_path / "case.toml").write_text(case.to_toml())
     assert load(tmp_path / "case.toml") == case
 

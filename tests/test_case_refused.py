@@ -5,6 +5,7 @@ from example_cases import bodies, write
 
 from parsim.__main__ import main
 from parsim.case import load
+from parsim.errors import nearest, suggestion
 
 
 def profile(words):
@@ -52,6 +53,11 @@ BROKEN = {
     "half periodic": ("3d", ["box.faces.y_min=periodic"], ['box.faces.y_max = "wall"', 'both or none must be "per']),
     "fill outside": ("3d", ["water.fill.1.max=[0.5,0.1,0.02]"], ["water.fill.1.max = [0.5, 0.1, 0.02]: x is outside"]),
     "empty fill": ("3d", ["water.fill.0.max=[0.1,0.1,0.0]"], ["water.fill.0.max", "empty, z must be greater"]),
+    "fill faster than sound": ("3d", ["water.fill.0.velocity=[0.0,0.0,-19.9]"],
+                               ["water.fill.0.velocity = [0.0, 0.0, -19.9]: reaches 19.9 m/s, must be less than",
+                                "sound in the model, 19.81 m/s", "give water.speed"]),
+    "top of a profile faster than sound": ("3d", ["water.fill.0.velocity=[10.0,0.0,0.0]", *profile('kind="linear"')],
+                                           ["velocity = [10.0, 0.0, 0.0]: reaches 19.99 m/s, must be less than"]),
     "fills overlap": ("3d", ["water.fill.1.min=[0.05,0,0]"], ["water.fill.1: overlaps water.fill.0"]),
     "unknown key of a profile": ("3d", profile('kind="log", rougness=1e-3'),
                                  ["0.profile.rougness: unknown key; did you mean water.fill.0.profile.roughness?"]),
@@ -75,6 +81,10 @@ BROKEN = {
                                ["1.0, 1.0, 1...: must be two or more, ascending"]),
     "table with a gap": ("3d", profile('kind="table", heights=[0.0, 0.1, 0.2], shares=[1.0, 1.0]'),
                          ["water.fill.0.profile.shares: 2 entries for 3 heights; must be as many"]),
+    "table above the water": ("3d", profile('kind="table", heights=[0.0, 0.11], shares=[1.0, 1.0]'),
+                              ["profile.heights = [0.0, 0.11]: must be heights in the fill, 0 to 0.1 m above its b"]),
+    "table below the bed": ("3d", profile('kind="table", heights=[-0.01, 0.1], shares=[1.0, 1.0]'),
+                            ["profile.heights = [-0.01, 0.1]: must be heights in the fill, 0 to 0.1 m"]),
     "keys of another profile": ("3d", profile('kind="linear", roughness=1e-3, shares=[1.0]'),
                                 ['profile.roughness: not used by kind = "linear"; allowed with it: bottom',
                                  'profile.shares: not used by kind = "linear"; allowed with it: bottom']),
@@ -102,11 +112,11 @@ BROKEN = {
                  ["bodies.A 1.name = 'A 1': must be a letter followed by"]),
     "density and mass": ("3d", ["bodies.A1.mass=0.1"], ["bodies.A1.density, mass: exactly one", "density = 868.0 and"]),
     "unknown material": ("3d", ["bodies.A1.material=polypropilene"],
-                         ['bodies.A1.material = "polypropilene": no such material', 'mean "polypropylene"?']),
+                         ['bodies.A1.material = "polypropilene": no such material', 'mean polypropylene?']),
     "unknown wall material": ("3d", ["wall_material=glass"], ['wall_material = "glass": no such material; allowed']),
     "heavy body afloat": ("3d", ["bodies.A1.density=1000"], ["bodies.A1.position", "does not float"]),
     "afloat on the floor": ("3d", ["bodies.A1.position=[0.2,0.05,'float']", "water.fill.1.max=[0.4,0.1,0.01]"],
-                            ["draught 0.01736 m is more than the depth"]),
+                            ["draught 0.01736 m is more than the depth of water there, 0.01 m"]),
     "afloat without water": ("3d", ["bodies.A1.position=[0.1025,0.05,'float']"], ["no fill under its centre x ="]),
     "afloat and tilted": ("3d", ["bodies.A1.angles=[0,5,0]"], ["faces must be level"]),
     "wrong word for a height": ("3d", ["bodies.A1.position=[0.05,0.05,'flot']"],
@@ -120,6 +130,7 @@ BROKEN = {
     "plane: spin about z": ("2d", ["bodies.square.spin=[0,0,1]"], ["spin = [0.0, 0.0, 1.0]: x and z must be 0"]),
     "plane: body width": ("2d", ["bodies.square.shape.size=[0.1,0.5,0.1]"], ["y must be 1 in a 2D case"]),
     "plane: body place": ("2d", ["bodies.square.position=[0.25,0.4,0.4]"], ["y must be 0.5 in a 2D case"]),
+    "plane: water across": ("2d", ["water.fill.0.velocity=[0.1,0.2,0.0]"], ["[0.1, 0.2, 0.0]: y must be 0 in a 2D"]),
     "plane: box width": ("2d", ["box.max=[0.5,2.0,0.6]"], ["y = 0.0 to 2.0: must be 0 to 1 in a 2D case"]),
     "plane: y faces": ("2d", ["box.faces.y_min=open"], ["a 2D case has none; leave them out"]),
     "several at once": ("3d", ["water.suport=3.1", "spacing=0.007", "gate.max_x=7", "wall_material=glass"],
@@ -130,13 +141,23 @@ BROKEN = {
 UNREADABLE = {
     "empty": ("", ["dimensions: missing", "spacing: missing", "box: missing", "run: missing"]),
     "syntax": ("spacing = 1\nrun = [}\n", ["not valid TOML", "line 2"]),
-    "key twice": ("spacing = 1\nspacing = 2\n", ["not valid TOML", "line 2"]),
+    "key twice": ("spacing = 1\nspacing = 2\n", ["not valid TOML: spacing is given twice, again on line 2"]),
+    "long value twice": ("[water]\nfill = [1]\nspeed = 1\nfill = [ # again\n  2,\n  3,\n]\n",
+                         ["water.fill is given twice, again on line 4"]),
+    "key of a body twice": ('[[bodies]]\nname = "a"\n[[bodies]]\nname = "b"\nmass = 1\nname = "c"\n',
+                            ["bodies.name is given twice, again on line 6"]),
+    "table twice": ("[box]\n[run]\n[ box ] # again\n", ["box is given twice, again on line 3"]),
+    "table that is a value": ("gate = {min_x = 1}\n[gate]\n", ["gate is given twice, again on line 2"]),
+    "dotted key twice": ("[run]\nuntil = 1\n[box]\nfaces.z_max = 1\nfaces.z_max = 2\n",
+                         ["box.faces.z_max is given twice, again on line 5"]),
+    "key twice between braces": ("gate = {min_x = 1, max_x = 2, min_x = 3}\n", ["min_x is given twice", "line 1"]),
     "deep": ("a = " + "[" * 5000 + "]" * 5000, ["not valid TOML"]),
     "long number": ("spacing = " + "9" * 5000, ["not valid TOML"]),
     "huge number": ("spacing = " + "9" * 400, ["spacing = 999"]),
     "bytes": (b"\xff\xfe\x00", ["not a text file in UTF-8"]),
     "extends itself": ('extends = "case.toml"\n', ["extends = loops", "case.toml -> case.toml"]),
     "extends nothing": ('extends = "other.toml"\n', ["other.toml: no such file"]),
+    "extends nothing like what there is": ('extends = "x.toml"\n', ["x.toml: no such file\n"]),
     "extends a path that is none": ('extends = "a\\u0000b"\n', ["must be the path of a case file"]),
     "extends a number": ("extends = 1\n", ["extends = 1: must be the path of a case file"]),
 }
@@ -179,6 +200,22 @@ def test_broken_files_are_refused(capsys, tmp_path, name):
     path = tmp_path / "case.toml"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     refused(capsys, path, [], fragments)
+
+
+def test_a_byte_order_mark_is_read_over(base):
+    marked = base["3d"].with_name("marked.toml")
+    marked.write_bytes(b"\xef\xbb\xbf" + base["3d"].read_bytes().replace(b"\n", b"\r\n"))
+    assert load(marked) == load(base["3d"])
+
+
+@pytest.mark.parametrize(("name", "known", "meant"), [
+    ("suport", ["support", "speed"], "support"), ("x", ["gy", "half"], None), ("wind", ["water", "run"], None),
+    ("glass", ["polypropylene", "acrylic"], None), ("4_block_dry", ["4_blocks_dry", "9_blocks_dry"], "4_blocks_dry"),
+    ("end", ["until"], None), ("anything", [], None),
+])  # fmt: skip
+def test_names_are_suggested_by_likeness_only(name, known, meant):
+    assert nearest(name, known) == meant
+    assert suggestion(meant) == ("" if meant is None else f"; did you mean {meant}?")
 
 
 def test_missing_files_are_refused(capsys, base):

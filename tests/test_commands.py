@@ -147,6 +147,22 @@ def test_estimate_counts_what_is_built(name):
     assert cost.water == pytest.approx(len(water(case, bodies, WCMPS(case))), rel=0.03)
 
 
+@pytest.mark.parametrize(("count", "said"), [
+    (1e3, "1 second "), (2.1e7, "42 seconds "), (1e9, "33 minutes "), (1e10, "5.6 hours ")])
+def test_check_tells_time_in_a_unit_that_shows_it(monkeypatch, tmp_path, count, said):
+    cost = estimate.Estimate(water=10**6, wall=0, body=0, gate=0, active=1000, bytes=0.0, steps=int(count / 1000))
+    monkeypatch.setattr(estimate, "estimate", lambda case: cost)
+    time = estimate.lines(load(write(tmp_path)["2d"]), 1)[3]
+    assert time.startswith(f"time       {said}")
+
+
+def test_check_tells_what_the_disk_will_hold(tmp_path):
+    case = load(write(tmp_path)["2d"], ["output.frames=0.1", "output.series=0.01", "output.milestones=0.5"])
+    frames, rows, checkpoints = estimate.disk(case)
+    assert frames == 12 * (90 * 1950 + 2000) and rows == pytest.approx(100 * 1500) and checkpoints % 1950 == 0
+    assert "disk       3.0 MB: 2.1 MB of frames, 150.0 kB of series, " in "\n".join(estimate.lines(case, 1))
+
+
 def test_estimate_of_a_small_tank_by_hand(tmp_path):
     cost = estimate.estimate(load(write(tmp_path)["2d"]))
     # 50 x 40 of water less half of 10 x 10, 50 x 60 inside, four layers on three sides

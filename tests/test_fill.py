@@ -5,7 +5,8 @@ import pytest
 from test_water import TANK, simulation
 
 from parsim.case import Fill, parse
-from parsim.setup import flow, profile_shares, water
+from parsim.case_fill import profile_shares
+from parsim.setup import flow, water
 from parsim.shapes import Lattice, disordered
 from parsim.state import FLUID, make_id
 

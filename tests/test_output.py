@@ -167,14 +167,44 @@ def test_a_resumed_table_equals_an_uninterrupted_one(tmp_path):
 
 
 def test_a_folder_that_is_no_output_is_refused_with_the_nearest(written, tmp_path):
-    with pytest.raises(InputError, match="no such folder.*did you mean .*/a?"):
-        parsim.open(written.parent / "aa")
+    with pytest.raises(InputError, match=r"no such folder.*did you mean .*/parts\?$"):
+        shutil.copytree(written, written.parent / "parts")
+        parsim.open(written.parent / "part")
+    with pytest.raises(InputError, match=r"no such folder\)$"):
+        parsim.open(written.parent / "q")
+    with pytest.raises(InputError, match=r"did you mean .*/a\?$"):
+        parsim.open(written / "frames")
+    with pytest.raises(InputError, match=r"did you mean .*/a\?$"):
+        parsim.open(written.parent)
     with pytest.raises(InputError, match="neither run.json nor a checkpoint"):
         parsim.open(tmp_path)
     with pytest.raises(InputError, match="did you mean energy"):
         parsim.open(written).series("enrgy")
-    with pytest.raises(InputError, match="2 frames of water"):
-        parsim.open(written).water(2)
+    with pytest.raises(InputError, match="series = 3: .*there are: bodies, counts, energy"):
+        parsim.open(written).series(3)
+
+
+@pytest.mark.parametrize("frame", ["a", 2, -3, 0.4, None])
+def test_a_frame_that_is_not_there_is_refused_with_what_is(written, frame):
+    with pytest.raises(InputError, match=rf"frame = {frame!r}: must be .* has 2 \(0 to 0.4 s\) of water"):
+        parsim.open(written).water(frame)
+    assert parsim.open(written).bodies(np.int64(1))["time"] == 0.4
+
+
+def test_kinds_and_times_that_are_none_are_refused(written):
+    run = parsim.open(written)
+    with pytest.raises(InputError, match="kind = 'watr': .* must be 'water' or 'bodies'; did you mean water"):
+        run.times("watr")
+    with pytest.raises(InputError, match="time = 'end': must be a number"):
+        run.nearest("end")
+
+
+def test_a_run_says_what_it_is(written, tmp_path):
+    said = repr(parsim.open(written))
+    for part in (str(written), "done", "2 (0 to 0.4 s) of water", "of bodies", "bodies, counts, energy"):
+        assert part in said
+    (tmp_path / "run.json").write_text("{}")
+    assert repr(parsim.open(tmp_path)).endswith("status unknown; frames: none of water, none of bodies; series: none>")
 
 
 def test_equal_outputs_compare_equal_in_any_order_of_particles(pair, capsys):

@@ -14,7 +14,8 @@ from matplotlib.image import imread
 
 import parsim
 from parsim.errors import InputError, WriteError
-from parsim.report import animation, budgets, measures, painter, pictures, plots, scene
+from parsim.output import series
+from parsim.report import animation, budgets, measures, painter, pictures, plots, scene, tables
 from parsim.report.build import build, moments
 from parsim.report.page import table
 
@@ -170,6 +171,37 @@ def test_the_profile_leaves_splash_out():
     middles, heights = plots.profile(water, 0.01, 0.0, 0.04)
     np.testing.assert_allclose(middles, [0.005, 0.015, 0.025, 0.035])
     np.testing.assert_allclose(heights, [0.025, 0.055, 0.075, np.nan])
+
+
+def test_the_profile_stops_where_bodies_cover_it(run):
+    moment, level = scene.load(run, 0), 0.15
+    x = np.arange(0.0005, 0.15, 0.001)
+    position = np.stack([x, np.full_like(x, 0.037), np.full_like(x, level - 0.02)], 1)
+    under = plots.covered(position, moment)
+    covers = (np.abs(x - 0.038) < 0.0725 / 2) | (np.abs(x - 0.112) < 0.0725 / 2)
+    assert (under == covers).all() and 0 < under.sum() < len(x)
+    assert not plots.covered(position + [0.0, 0.0, 0.05], moment).any(), "water on top of a body is a surface"
+    middles, heights = plots.profile({"position": position, "class": np.zeros(len(x))}, 0.001, 0.0, 0.15, under)
+    assert (np.isnan(heights) == covers).all()
+
+
+def test_small_shares_have_digits(tmp_path):
+    (tmp_path / "series").mkdir()
+    (tmp_path / "run.json").write_text("{}")
+    for name, column, values in (("energy", "total", (2.0, 2.0 + 6e-7)), ("counts", "volume", (1.0, 1.0 - 4e-8))):
+        table = series.Table(tmp_path / f"series/{name}.csv", {"step": "-", "time": "s", column: "-"})
+        for step, value in enumerate(values):
+            table.row(step, float(step), value)
+        table.close()
+    energy, volume = tables.summary(parsim.open(tmp_path))[1:]
+    assert "at most: 3e-05 % of" in energy and "within 4e-06 % of" in volume
+
+
+def test_nothing_is_said_of_times_after_the_end(run, tmp_path):
+    words = tables.compared(run)
+    assert "largest X to 1.1 s (m)" in words and "max X (here to 1.1 s)" in words and "1.5 s (m)" not in words
+    long = parsim.open(fake_run.make(tmp_path / "long", times=(0.0, 1.6), spacing=0.03))
+    assert "largest X to 1.5 s (m)" in tables.compared(long) and "here to" not in tables.compared(long)
 
 
 def test_moments_are_reached_ones():

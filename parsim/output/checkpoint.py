@@ -16,10 +16,9 @@ import numpy as np
 
 from parsim.errors import InputError
 from parsim.output.frames import replacing
-from parsim.state import FIELDS, OF_WATER, Particles
+from parsim.state import OF_WATER, WATER_BYTES, Particles
 
 FOLDER, SUFFIX = "checkpoints", ".h5"
-WATER_BYTES = sum(np.dtype(field.dtype).itemsize for field in FIELDS if field.name in OF_WATER)  # of one particle
 _KIND = b"parsim checkpoint, format 1\n"
 _OVERHEAD = 65536  # bytes of a file besides its water, bodies not counted
 _BLOCK = 512  # bytes of the text; what HDF5 calls a user block

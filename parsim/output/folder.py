@@ -1,22 +1,17 @@
 """The output folder: made or opened again, locked, with room on its disk, free of what a killed job has left."""
 
 import json
-import math
 import shutil
 import sys
 from pathlib import Path
 
 from parsim.errors import InputError, WriteError
-from parsim.estimate import estimate
+from parsim.estimate import disk
 from parsim.output import checkpoint, lock
 from parsim.output.frames import write_text
 from parsim.output.reader import MARK, is_output
 from parsim.output.reader import open as open_run
 from parsim.output.series import TABLES
-
-_WATER_BYTES, _BODY_BYTES = 90, 2000  # in a frame: of a particle, of a body
-_ROW_BYTES, _BODY_ROW_BYTES = 600, 900  # of all series, and of each body in them
-
 
 # what a run and its report write, in the order in which it is removed: what a killed job leaves of it must not be taken
 # for another run's
@@ -143,17 +138,7 @@ def _remove(path):
 def _check_room(case, out):
     """Refuse a run whose output will not fit on the disk."""
     place = next(path for path in (out, *out.absolute().parents) if path.is_dir())
-    needed, free = room_for(case), shutil.disk_usage(place).free
+    needed, free = sum(disk(case)), shutil.disk_usage(place).free
     if needed > free:
         raise WriteError(out, f"the output will take about {needed / 1e9:.2g} GB and {free / 1e9:.2g} GB are free; "
                               "write fewer frames (output.frames), or elsewhere")
-
-
-def room_for(case):
-    """Bytes that the frames, series and checkpoints of a case will take on the disk, about."""
-    cost, time = estimate(case), case.run.until - case.start
-    frame = _WATER_BYTES * cost.water + _BODY_BYTES * len(case.bodies)
-    rows = time / case.output.series * (_ROW_BYTES + _BODY_ROW_BYTES * len(case.bodies))
-    milestones = time / case.output.milestones if case.output.milestones else 0.0
-    kept = checkpoint.WATER_BYTES * cost.water * (3.0 + math.ceil(milestones))  # one is written before one is removed
-    return math.ceil(time / case.output.frames + 2.0) * frame + rows + kept

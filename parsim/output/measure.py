@@ -3,6 +3,7 @@
 import numpy as np
 
 from parsim import diagnostics
+from parsim.case_bodies import GAUGE_REACH
 from parsim.solid.rotation import matrices
 
 
@@ -65,7 +66,7 @@ class Measure:
         if not len(self.gauges):
             return []
         p, top = s.domain.particles, np.full(len(self.gauges), -np.inf)
-        diagnostics.levels(s.near.fluid, p.surface, p.x, p.y, p.z, self.gauges, 1.5 * self.case.spacing,
+        diagnostics.levels(s.near.fluid, p.surface, p.x, p.y, p.z, self.gauges, GAUGE_REACH * self.case.spacing,
                            self.case.dimensions == 2, top)
         top = s.domain.max(*top)
         level = np.where(np.isfinite(top), top + 0.5 * self.case.spacing, np.nan)

@@ -1,8 +1,8 @@
 """The public reader of an output folder: frames, series and case as numpy arrays, read when asked for."""
 
 import csv
-import difflib
 import json
+import operator
 import tomllib
 from functools import cached_property
 from pathlib import Path
@@ -10,10 +10,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from parsim.errors import InputError
+from parsim.errors import InputError, nearest, suggestion
 from parsim.output.frames import read_index
 
 MARK = "run.json"  # the first file that a run writes
+KINDS = ("water", "bodies")  # of frames
 
 
 def open(folder):  # noqa: A001  (public as parsim.open, like gzip.open or h5py.File)
@@ -33,14 +34,13 @@ def is_output(folder):
 
 
 def _refusal(folder):
-    """Why a folder is no output, and which one was perhaps meant."""
+    """Why a folder is no output, and which one was perhaps meant: one that holds it, one in it, one named like it."""
     reason = f"holds neither {MARK} nor a checkpoint" if folder.is_dir() else "there is no such folder"
-    message = f"OUT = {folder}: not an output folder of parsim ({reason})"
-    around = [folder, folder.parent, folder.parent.parent]
-    found = {str(path.parent): None for place in around if place.is_dir() for path in sorted(place.glob("*/run.json"))}
-    found |= {str(place): None for place in around if (place / "run.json").is_file()}
-    nearest = difflib.get_close_matches(str(folder), found, 1, 0.0)
-    return message + (f"; did you mean {nearest[0]}?" if nearest else "")
+    beside = {path.parent.name: path.parent for path in folder.parent.glob(f"*/{MARK}")}
+    related = [place for place in folder.parents if (place / MARK).is_file()]
+    related += sorted(path.parent for path in folder.glob(f"*/{MARK}"))
+    meant = related[0] if related else beside.get(nearest(folder.name, beside))
+    return f"OUT = {folder}: not an output folder of parsim ({reason}){suggestion(meant)}"
 
 
 class Run:
@@ -55,6 +55,11 @@ class Run:
 
     def __init__(self, folder):
         self.folder = Path(folder)
+
+    def __repr__(self):
+        frames = ", ".join(f"{self._held(kind)} of {kind}" for kind in KINDS)
+        status, series = self.info.get("status", "status unknown"), ", ".join(self.series_names) or "none"
+        return f"<parsim run in {self.folder}: {status}; frames: {frames}; series: {series}>"
 
     @cached_property
     def case(self):
@@ -84,18 +89,20 @@ class Run:
         return sorted(path.stem for path in (self.folder / "series").glob("*.csv"))
 
     def times(self, kind="water"):
-        """Times (frames,) in s of the frames of ``kind``, "water" or "bodies"."""
-        return np.array([time for _, time in read_index(self.folder / f"{kind}.vtkhdf.series")], float)
+        """Times (frames,) in s of the frames of ``kind``, "water" or "bodies". Raises InputError for another kind."""
+        return np.array([time for _, time in self._frames(kind)], float)
 
     def nearest(self, time, kind="water"):
-        """Index of the frame nearest to ``time`` (s). Raises InputError when there is no frame."""
+        """Index of the frame nearest to ``time`` (s). Raises InputError when there is no frame, or no such kind."""
         times = self.times(kind)
+        if not isinstance(time, int | float | np.number):
+            raise InputError(f"time = {time!r}: must be a number, s; OUT = {self.folder} has {self._held(kind)}")
         if not len(times):
             raise InputError(f"OUT = {self.folder}: holds no frames of {kind}")
         return int(np.argmin(np.abs(times - time)))
 
     def water(self, frame):
-        """One frame of water, as a dict.
+        """One frame of water, as a dict; -1 is the last. Raises InputError for a frame there is not.
 
         time (s), step; position (n, 3) m, id (n,), velocity (n, 3) m/s, pressure (n,) Pa, class (n,) with 0 internal,
         1 near the surface, 2 surface, 3 detached, density_ratio (n,) of the number density to its reference.
@@ -105,7 +112,7 @@ class Run:
             return {**_common(root), "position": root["Points"][:], **_arrays(root["PointData"])}
 
     def bodies(self, frame):
-        """One frame of bodies, as a dict.
+        """One frame of bodies, as a dict; -1 is the last. Raises InputError for a frame there is not.
 
         time (s), step; points (m, 3) m and quads (k, 4) of the surfaces, body (k,) of each face; per body position
         (nb, 3) m, quaternion (nb, 4) as w, x, y, z, velocity (nb, 3) m/s, spin (nb, 3) rad/s, and the loads (nb, 6),
@@ -126,26 +133,40 @@ class Run:
         return {title: _typed(values) for title, values in zip(titles, columns, strict=True)}
 
     def units(self, name):
-        """The unit of each column of a series."""
+        """The unit of each column of a series, as a dict of texts. Raises InputError for a name there is not."""
         units, titles, _ = self._table(name)
         return dict(zip(titles, units, strict=True))
 
     def _frame(self, kind, frame):
-        entries = read_index(self.folder / f"{kind}.vtkhdf.series")
-        if not -len(entries) <= frame < len(entries):
-            raise InputError(f"OUT = {self.folder}: has {len(entries)} frames of {kind}, there is no frame {frame}")
-        path = self.folder / entries[frame][0]
+        entries = self._frames(kind)
+        try:
+            path = self.folder / entries[operator.index(frame)][0]
+        except (TypeError, IndexError):
+            raise InputError(f"frame = {frame!r}: must be the number of a frame, 0 the first and -1 the last; "
+                             f"OUT = {self.folder} has {self._held(kind)} of {kind}") from None
         try:
             return h5py.File(path, "r")
         except OSError as error:
             raise InputError(f"{path}: cannot be read as a frame ({error})") from error
 
+    def _frames(self, kind):
+        """File and time of each frame of a kind."""
+        if kind not in KINDS:
+            raise InputError(f"kind = {kind!r}: no such frames; must be {' or '.join(map(repr, KINDS))}"
+                             + suggestion(nearest(str(kind), KINDS)))
+        return read_index(self.folder / f"{kind}.vtkhdf.series")
+
+    def _held(self, kind):
+        """How many frames of a kind there are and of what times, in words."""
+        times = self.times(kind)
+        return f"{len(times)} ({times[0]:g} to {times[-1]:g} s)" if len(times) else "none"
+
     def _table(self, name):
         path = self.folder / "series" / f"{name}.csv"
         if not path.is_file():
-            nearest = difflib.get_close_matches(name, self.series_names, 1)
-            hint = f"; did you mean {nearest[0]}?" if nearest else ""
-            raise InputError(f"series {name}: not in {path.parent}, there are {self.series_names}{hint}")
+            there = ", ".join(self.series_names) or "none"
+            raise InputError(f"series = {name!r}: not in {path.parent}; there are: {there}"
+                             + suggestion(nearest(str(name), self.series_names)))
         # what follows the last line end is a row that was being written
         lines = path.read_text(encoding="utf-8").split("\n")[:-1]
         units = lines[0].removeprefix("# units: ").split(", ")

@@ -109,7 +109,7 @@ def _curves(folder, run, frames):
         section("Water profile", folder.figure(
             "profiles", profiles, "Surface height along the tank at two times.",
             "Highest connected water across the tank, splash left out, in the frames nearest to the quoted times; "
-            "bodies in their places.")),
+            "bodies in their places. The line is the free surface and stops where bodies cover it.")),
         section("Front", folder.figure(
             "front", plots.front(run), "Curve of the front's position over time.",
             "Front of the connected water; it has arrived when two spacings from the end wall (black).")),

@@ -48,6 +48,12 @@ def energy_created(energy):
     return energy["time"][later], (total - total[0] - (work - work[0])) / total[0]
 
 
+def compared_until(run):
+    """The end (s) of what is held against experiments: they repeat until 1.5 s, and the run may end before."""
+    series = columns(run, "bodies")
+    return ALIKE_UNTIL if series is None else min(ALIKE_UNTIL, float(series["time"][-1]))
+
+
 def largest_x(track):
     """The largest x (m) of a body's centre while experiments repeat, and when (s); None before t = 0."""
     some = np.flatnonzero((track["time"] >= 0) & (track["time"] <= ALIKE_UNTIL))

@@ -26,31 +26,36 @@ def summary(run):
         lines.append(f"The front reached the end wall at {arrival:.3f} s.")
     if (energy := measures.columns(run, "energy")) is not None:
         created = measures.energy_created(energy)[1]
-        lines.append(f"Energy created, at most: {max(np.max(created, initial=0.0), 0.0):.2%} of that at the start.")
+        lines.append(f"Energy created, at most: {_percent(np.max(created, initial=0.0))} of that at the start.")
     if (counts := measures.columns(run, "counts")) is not None:
         drift = np.max(np.abs(counts["volume"] / counts["volume"][0] - 1))
         leaks = [f"{counts[name].max()} {name.replace('_', ' ')}" for name in LEAKS if name in counts]
-        lines.append(f"Volume within {drift:.2%} of its first value; particles at most " + ", ".join(leaks) + ".")
+        lines.append(f"Volume within {_percent(drift)} of its first value; particles at most " + ", ".join(leaks) + ".")
     if info.get("warnings"):
         lines.append(f"Warnings: {len(info['warnings'])}, listed below.")
     return lines
 
 
-BODY_TITLES = ("body", "draught before release (m)", "by Archimedes (m)",
-               *(f"X at {time:g} s (m)" for time in measures.LEVELS),
-               f"largest X to {measures.ALIKE_UNTIL:g} s (m)", "when (s)")  # fmt: skip
+def _percent(share):
+    """A share with as many digits as show it."""
+    return f"{100 * share:.2g} %"
 
 
 def compared(run):
     """Tables of what is measured here beside what is published, and of the bodies."""
-    rows = []
+    rows, end = [], measures.compared_until(run)
     for number in measures.published(run):
         value = measures.measured(run, number)
         spread = [f"{end:g}" for end in dict.fromkeys((number.low, number.high)) if end is not None]
-        rows.append((number.quantity, number.block or "-", number.unit, value, " to ".join(spread) or "not quoted",
+        short = number.quantity.startswith("max X") and number.time is not None and end < number.time
+        quantity = f"{number.quantity} (here to {end:.3g} s)" if short else number.quantity
+        rows.append((quantity, number.block or "-", number.unit, value, " to ".join(spread) or "not quoted",
                      number.model, measures.verdict(value, number), number.source))  # fmt: skip
     titles = ("quantity", "body", "unit", "here", "experiments", "published model", "against the experiments", "source")
-    return table(titles, rows) + table(BODY_TITLES, bodies(run))
+    places = [f"X at {time:g} s (m)" for time in measures.LEVELS]
+    of_bodies = ("body", "draught before release (m)", "by Archimedes (m)", *places, f"largest X to {end:.3g} s (m)",
+                 "when (s)")  # fmt: skip
+    return table(titles, rows) + table(of_bodies, bodies(run))
 
 
 def bodies(run):
