@@ -14,7 +14,7 @@ from parsim.errors import InputError
 from parsim.films import Films
 from parsim.fluid.wcmps import WCMPS
 from parsim.neighbours import Neighbours
-from parsim.shapes import Lattice, disordered, taken_by_bodies
+from parsim.shapes import Lattice, disordered, kept_out, taken_by_bodies
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
 from parsim.state import FLUID, Particles, make_id
@@ -93,7 +93,7 @@ def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
             open_water &= (x < case.gate.min_x) | (x > case.gate.max_x)
         mine = points.within(open_water, np.ones(y.size, bool), np.ones(z.size, bool))
         mine = mine[~np.isin(mine, taken_by_bodies(points, case, bodies))]
-        place = disordered(points, mine, number, case.water.disorder, case.axes)
+        place = kept_out(points, mine, disordered(points, mine, number, case.water.disorder, case.axes), case, bodies)
         parts.append(_particles(case, scheme, fill, place, number + mine))
         number += points.size
     fluid = Particles.join(parts) if parts else Particles()

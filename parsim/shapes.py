@@ -116,6 +116,25 @@ def taken_by_bodies(points, case, bodies):
     return number[near[np.lexsort((scatter(number[near]), depth))[:count]]]
 
 
+def kept_out(points, number, place, case, bodies):
+    """`place` (n, 3), m, of points of a Lattice that were moved; moved back where that led into bodies or the gate.
+
+    None comes nearer than half a spacing to them that has not stood there before.
+    """
+    place, half = place.copy(), 0.5 * case.spacing
+    near = np.flatnonzero(np.isin(number, beside_bodies(points, case, bodies)))
+    even = points.points(number)
+    if near.size:
+        before, after = (solids(at[near], case, bodies)[0] for at in (even, place))
+        back = near[after < np.minimum(before, half)]
+        place[back] = even[back]
+    if case.gate is not None:
+        before, after = (np.maximum(case.gate.min_x - at[:, 0], at[:, 0] - case.gate.max_x) for at in (even, place))
+        back = after < np.minimum(before, half)
+        place[back] = even[back]
+    return place
+
+
 def disordered(points, number, first, share, axes):
     """Points (n, 3), m, of these numbers of a Lattice, each moved by up to `share` spacings along each of `axes`.
 

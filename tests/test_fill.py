@@ -7,7 +7,8 @@ from test_water import TANK, simulation
 from parsim.case import Fill, parse
 from parsim.case_fill import profile_shares
 from parsim.setup import flow, water
-from parsim.shapes import Lattice, disordered
+from parsim.shapes import Lattice, disordered, outside_box
+from parsim.solid.rotation import matrices
 from parsim.state import FLUID, make_id
 
 CHANNEL = TANK | {"box": {"max": [0.2, 1.0, 0.2], "faces": {"x_min": "periodic", "x_max": "periodic"}}}
@@ -104,6 +105,45 @@ def test_disorder_moves_nobody_far_nor_out(axes):
     assert (disordered(points, some, 7, 0.3, axes) == moved[some]).all(), "the same in any slab"
     assert (disordered(points, every, 8, 0.3, axes) != moved)[:, axes].mean() > 0.9
     assert (disordered(points, every, 7, 0.0, axes) == even).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_disorder_moves_no_water_into_bodies_or_the_gate(seed):
+    random = np.random.default_rng(seed)
+    body = {"shape": {"size": [0.06, 1.0, 0.043]}, "density": 700.0, "material": "wood"}
+    bodies = [body | {"name": f"b{i}", "position": [0.06 + 0.17 * i + 0.01 * random.random(), 0.5, 0.08],
+                      "angles": [0.0, 90.0 * random.random(), 0.0]} for i in range(2)]
+    fills = [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.13]}]
+    data = TANK | {"box": {"max": [0.4, 1.0, 0.2]}, "bodies": bodies, "gate": {"min_x": 0.147, "max_x": 0.152}}
+    even, moved = (simulation(data | {"water": {"fill": fills, "disorder": share}}) for share in (0.0, 0.5))
+    places = []
+    for s in (even, moved):
+        p, at = s.domain.particles, s.near.fluid
+        order = np.argsort(p.id[at])
+        places.append(np.stack([p.x[at], p.y[at], p.z[at]], 1)[order])
+    before, after = places
+    assert before.shape == after.shape and np.abs(after - before)[:, [0, 2]].mean() > 0.002
+
+    def clear(place):
+        boxes = [outside_box(place, c, turn, half, (0, 2))[0] for c, turn, half in zip(
+            even.bodies.position, matrices(even.bodies.quaternion), even.bodies.half, strict=True)]
+        return np.minimum(np.min(boxes, axis=0), np.maximum(0.147 - place[:, 0], place[:, 0] - 0.152))
+
+    assert (clear(after) >= np.minimum(clear(before), 0.005) - 1e-12).all()
+    assert (clear(after) < 0.01).sum() > 20, "some do stand beside them"
+
+
+def test_touching_fills_press_as_one_water():
+    high = TANK | {"box": {"max": [0.2, 1.0, 0.6]}}
+    whole = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.4]}]
+    parts = [{"min": [0.0, 0.0, z], "max": [0.2, 1.0, z + 0.2]} for z in (0.2, 0.0)]
+    numbers = []
+    for s in (simulation(high | {"water": {"fill": fills}}) for fills in (whole, parts)):
+        p, at = s.domain.particles, s.near.fluid
+        order = np.lexsort((p.x[at], np.round(p.z[at], 9)))
+        numbers.append(p.n[at][order])
+    assert numbers[1] == pytest.approx(numbers[0], rel=1e-12)
+    assert np.ptp(numbers[0]) > 0.002 * numbers[0][0]
 
 
 def test_slabs_start_with_the_parts_of_one_disorder_and_flow():
