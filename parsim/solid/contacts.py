@@ -11,6 +11,7 @@ from parsim.solid.hertz import pair_tables
 from parsim.solid.motion import begin, finish
 from parsim.solid.search import (
     ELEMENT,
+    KEY,
     SLOT_KEY,
     STRETCH,
     TOUCHING,
@@ -22,6 +23,7 @@ from parsim.solid.search import (
     sort_pairs,
 )
 from parsim.solid.substeps import advance, elastic
+from parsim.solid.tanks import LOST, recall_tanks, room_for_tanks
 
 _SHARE = 0.1  # of the smallest edge that a body may move in one step
 _FAR = 1e3  # half edges of the gate over the size of the box: it has neither ends nor a top
@@ -43,11 +45,13 @@ class Contacts:
         self._first, self._elements, cell = elements_of(bodies)
         self._table = _table(bodies, cell, case, self._gate)
         self._pairs, self._shift = room_for_pairs(64)
+        self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
         self._smallest = 2.0 * float(np.min(bodies.half)) if len(bodies) else math.inf
         self.dissipated = self.gate_work = self._time = 0.0
         self.count, self.steps, self._state = 0, 0, np.zeros(2)
         self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 3))
+        self._pair, self._stored = np.zeros(0, np.int64), np.zeros((0, 2))
 
     def limit(self):
         """Largest step of the water, s, over which the normals of contacts may be kept; inf when nothing moves."""
@@ -63,10 +67,10 @@ class Contacts:
         bodies.water_load[:] = water_load
         number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
         self.count, self.steps, lost, work = advance(
-            self._table, *self._listed(), number, dt, reach, self._steps_per_contact, self._state
+            self._table, *self._listed(), self._tanks, number, dt, reach, self._steps_per_contact, self._state
         )
         self.dissipated, self.gate_work, self._time = self.dissipated + lost, self.gate_work + work, time + dt
-        self._remember(slots)
+        self._remember(number, slots)
         finish(self._table, dt, bodies.position, bodies.quaternion, bodies.velocity, bodies.spin, bodies.acceleration,
                bodies.angular_acceleration, bodies.contact_load)
 
@@ -75,17 +79,18 @@ class Contacts:
         if not len(self.bodies):
             return 0.0
         number, _, _ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
-        return float(elastic(self._table, *self._listed(), number))
+        return float(elastic(self._table, *self._listed(), self._tanks, number))
 
     def kept(self):
-        """What a restart needs: name -> array; the memory of friction by pair and element, and the totals."""
+        """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
         totals = np.array([self.dissipated, self.gate_work, self._time, *self._state])
         return {"key": self._key.copy(), "element": self._element.copy(), "stretch": self._stretch.copy(),
-                "totals": totals}
+                "pair": self._pair.copy(), "stored": self._stored.copy(), "totals": totals}
 
     def restore(self, kept):
         """Go on from what `kept` returned."""
-        self._key, self._element = (np.array(kept[name], np.int64) for name in ("key", "element"))
+        self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
+        self._stored = np.array(kept["stored"], float).reshape(-1, 2)
         self._stretch = np.array(kept["stretch"], float).reshape(-1, 3)
         self.dissipated, self.gate_work, self._time = (float(v) for v in kept["totals"][:3])
         self._state = np.array(kept["totals"][3:], float)
@@ -117,6 +122,9 @@ class Contacts:
             number, reach = near_pairs(*find, self._pairs, self._shift)
         if number > 1:
             sort_pairs(self._pairs, self._shift, number)
+        if number > len(self._tanks):
+            self._tanks = room_for_tanks(2 * number)
+        recall_tanks(self._pairs, number, self._tanks, self._pair, self._stored)
         return number, reach
 
     def _list_slots(self, number, reach):
@@ -130,9 +138,11 @@ class Contacts:
         recall(self._marks, self._slots, count, self._key, self._element, self._stretch)
         return count
 
-    def _remember(self, count):
-        if not count and not len(self._key):
+    def _remember(self, number, count):
+        if not count and not len(self._key) and not len(self._pair):
             return
+        at = np.flatnonzero(self._tanks[:number, : LOST + 1].any(axis=1))
+        self._pair, self._stored = self._pairs[at, KEY], self._tanks[at, : LOST + 1]
         at = np.flatnonzero(self._marks[:count, TOUCHING])
         self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]
         self._stretch = self._slots[at, STRETCH:]

@@ -8,29 +8,32 @@ from parsim.solid.motion import clear_loads, speed_of
 from parsim.solid.rotation import to_body
 from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, A, B
 from parsim.solid.separation import between
-from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
+from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
+from parsim.solid.tanks import load_pair
 from parsim.solid.touch import centre_of, measure, normal_of
+
+_NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def press(m, elements, walls, law, pairs, shift, marks, slots, number, lapse):
-    """Contact loads of the first `number` pairs into the table; (elements touching, energy in friction, J).
+def press(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, lapse):
+    """Contact loads of the first `number` pairs into the table and the tanks; how many elements touch.
 
     `law` (3, n, n): stiffness per area, Pa/m, damping ratio and friction over materials. `lapse`: time since the last
     call, s, by which friction springs have stretched. 50 ns an element that touches, 1 us a pair that overlaps.
     """
     clear_loads(m)
-    touching, stored = 0, 0.0
+    touching = 0
     for c in range(number):
         apart, x, y, z = normal_of(m, walls, pairs, shift, c)
         area = measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) if apart < 0.0 else 0.0
         if area == 0.0:
             for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
                 marks[slot, TOUCHING] = 0
+            load_pair(m, pairs, shift, tanks, c, 0.0, 0.0, _NO_LOAD, _NO_LOAD)
             continue
-        more, energy = _push(m, law, pairs, three(shift, c, 0), marks, slots, c, (x, y, z), area, lapse)
-        touching, stored = touching + more, stored + energy
-    return touching, stored
+        touching += _push(m, law, pairs, shift, marks, slots, tanks, c, (x, y, z), area, lapse)
+    return touching
 
 
 @kernel
@@ -56,30 +59,29 @@ def _compliance(m, b, p, by, n):
 
 
 @kernel
-def _push(m, law, pairs, by, marks, slots, c, n, total, lapse):
-    """Add the loads of one pair whose elements touch with the area `total`; (elements, energy in friction springs).
+def _push(m, law, pairs, shift, marks, slots, tanks, c, n, total, lapse):
+    """Add the loads of one pair whose elements touch with the area `total`; how many there are.
 
     The dashpots share 2 b sqrt(m* k A) by area, m* taken at the centre of the touching area: restitution then depends
     neither on the number of elements nor on where the body is hit.
     """
-    a, b, first, last = pairs[c, A], pairs[c, B], pairs[c, FIRST], pairs[c, LAST]
+    a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     stiffness, damping, mu = coefficients(m, law, a, b)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total)
     motion = relative_motion(m, a, b, by)
-    touching, stored, force, loss = _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu)
-    _add_load(m, LOAD, a, b, by, force)
-    _add_load(m, LOSS, a, b, by, loss)
-    return touching, stored
+    touching, shear, pressed, force, loss = _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu)
+    load_pair(m, pairs, shift, tanks, c, shear + pressed, shear, force, loss)
+    return touching
 
 
 @kernel
 def _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu):
-    """The law for each element of one pair: (touching, energy in friction, force on body a, its dissipating part).
+    """The law for each element of one pair: (touching, energy in friction, in foundations, load on a, its lossy part).
 
-    Both are six numbers: force and torque about the centre of body a.
+    Both loads are six numbers: force and torque about the centre of body a.
     """
-    count, stored, tangential = 0, 0.0, math.sqrt(TANGENTIAL) * dashpot
+    count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(TANGENTIAL) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
     for slot in range(first, last + 1):
@@ -98,14 +100,14 @@ def _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu):
         )
         slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
         marks[slot, TOUCHING] = 1
-        count, stored = count + 1, stored + energy
+        count, stored, pressed = count + 1, stored + energy, pressed + 0.5 * elastic * depth
         p, q, r = normal * n[0] + slip[0], normal * n[1] + slip[1], normal * n[2] + slip[2]
         fx, fy, fz = fx + p, fy + q, fz + r
         tx, ty, tz = tx + (y * r - z * q), ty + (z * p - x * r), tz + (x * q - y * p)
         p, q, r = p - elastic * n[0], q - elastic * n[1], r - elastic * n[2]
         gx, gy, gz = gx + p, gy + q, gz + r
         ux, uy, uz = ux + (y * r - z * q), uy + (z * p - x * r), uz + (x * q - y * p)
-    return count, stored, (fx, fy, fz, tx, ty, tz), (gx, gy, gz, ux, uy, uz)
+    return count, stored, pressed, (fx, fy, fz, tx, ty, tz), (gx, gy, gz, ux, uy, uz)
 
 
 @kernel
@@ -124,20 +126,6 @@ def velocity_at(motion, x, y, z):
     """Relative velocity at (x, y, z) from the centre of a `relative_motion`."""
     _, v, w = motion
     return v[0] + w[1] * z - w[2] * y, v[1] + w[2] * x - w[0] * z, v[2] + w[0] * y - w[1] * x
-
-
-@kernel
-def _add_load(m, at, a, b, by, f):
-    """Add force and torque `f` (six, about the centre of a) to columns `at` of body a, its reaction to b's."""
-    for k in range(6):
-        m[a, at + k] += f[k]
-    if b >= 0:
-        x, y, z = between(m, a, b, by)
-        for k in range(3):
-            m[b, at + k] -= f[k]
-        m[b, at + 3] -= f[3] + (y * f[2] - z * f[1])
-        m[b, at + 4] -= f[4] + (z * f[0] - x * f[2])
-        m[b, at + 5] -= f[5] + (x * f[1] - y * f[0])
 
 
 @kernel

@@ -19,6 +19,7 @@ from parsim.solid.table import (
     LIGHT,
     LOAD,
     LOSS,
+    MEAN,
     MOMENTUM,
     POSITION,
     QUATERNION,
@@ -62,7 +63,7 @@ def begin(m, position, quaternion, velocity, spin, mass, held, water, gravity, p
         m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
     for b in range(mass.size + 1):
         for k in range(6):
-            m[b, TOTAL + k] = 0.0
+            m[b, TOTAL + k] = m[b, MEAN + k] = 0.0
 
 
 @kernel
@@ -106,19 +107,13 @@ def drift(m, b, dt):
 
 @kernel
 def kick(m, b, dt):
-    """Change the momenta of body `b` by its loads over `dt`, s; returns the energy its contacts dissipate, J."""
-    lost = 0.0
-    for a in range(3):
-        lost -= 0.5 * dt * (m[b, LOSS + a] * m[b, VELOCITY + a] + m[b, LOSS + 3 + a] * m[b, SPIN + a])
+    """Change the momenta of body `b` by its loads over `dt`, s."""
     for a in range(3):
         m[b, VELOCITY + a] += dt * m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
         m[b, MOMENTUM + a] += dt * (m[b, GIVEN + 3 + a] + m[b, LOAD + 3 + a])
     for k in range(6):
         m[b, TOTAL + k] += dt * m[b, LOAD + k]
     _update_spin(m, b)
-    for a in range(3):
-        lost -= 0.5 * dt * (m[b, LOSS + a] * m[b, VELOCITY + a] + m[b, LOSS + 3 + a] * m[b, SPIN + a])
-    return lost
 
 
 @kernel
@@ -151,15 +146,32 @@ def drift_involved(m, dt):
 
 
 @kernel
-def kick_involved(m, dt):
-    """Kick these bodies; returns (energy dissipated, work done by the gate on bodies), J."""
-    gate, lost, work = len(m) - 1, 0.0, 0.0
+def foresee(m, dt):
+    """Set the MEAN of these bodies and the gate for a kick over `dt`, s, by the present loads."""
+    gate = len(m) - 1
+    for a in range(3):
+        m[gate, MEAN + a] = m[gate, VELOCITY + a]
     for b in range(gate):
         if m[b, ROLE] == INVOLVED:
-            lost += kick(m, b, dt)
+            t, u = three(m, b, GIVEN + 3), three(m, b, LOAD + 3)
+            turn = scaled(turn_at(m, b), three(m, b, INVERSE), t[0] + u[0], t[1] + u[1], t[2] + u[2])
+            for a in range(3):
+                push = m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
+                m[b, MEAN + a] = m[b, VELOCITY + a] + 0.5 * dt * push
+                m[b, MEAN + 3 + a] = m[b, SPIN + a] + 0.5 * dt * turn[a]
+
+
+@kernel
+def kick_involved(m, dt):
+    """Kick these bodies, their MEAN known; returns (energy dissipated, work done by the gate on bodies), J."""
+    gate, lost, work = len(m) - 1, 0.0, 0.0
+    for b in range(len(m)):
+        for k in range(6):
+            lost -= dt * m[b, LOSS + k] * m[b, MEAN + k]
+        if m[b, ROLE] == INVOLVED:
+            kick(m, b, dt)
     for a in range(3):
         work -= dt * m[gate, LOAD + a] * m[gate, VELOCITY + a]
-        lost -= dt * m[gate, LOSS + a] * m[gate, VELOCITY + a]
     return lost, work
 
 

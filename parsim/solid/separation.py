@@ -12,6 +12,7 @@ from parsim.solid.table import CELL, HALF, POSITION, TURN, three
 
 _LATERAL = 0.1  # cosine below which a face lies along the normal and does not bound the depth
 _EDGE_BIAS = 0.05  # an edge-edge normal must be better than a face normal by this share
+_PARALLEL = 0.05  # sine of the angle below which edges are parallel: their normal would turn 20 times as fast as they
 
 
 @kernel
@@ -31,7 +32,7 @@ def reach_along(m, b, x, y, z):
 
 @kernel
 def direction(m, a, b, feature):
-    """Unit vector of `feature`: 0-2 axes of a, 3-5 of b, 6-14 their cross products; zeros if those are parallel."""
+    """Unit vector of `feature`: 0-2 axes of a, 3-5 of b, 6-14 their cross products; zeros if these are parallel."""
     if feature < 3:
         return axis(m, a, feature)
     if feature < 6:
@@ -40,7 +41,7 @@ def direction(m, a, b, feature):
     p, q, r = axis(m, b, (feature - 6) % 3)
     x, y, z = v * r - w * q, w * p - u * r, u * q - v * p
     length = math.sqrt(x * x + y * y + z * z)
-    if length < 1e-3:
+    if length < _PARALLEL:
         return 0.0, 0.0, 0.0
     return x / length, y / length, z / length
 

@@ -12,6 +12,7 @@ from parsim.solid.rotation import scaled
 from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, A, B
 from parsim.solid.separation import overlap_share, ramp_of
 from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at
+from parsim.solid.tanks import STORED, restrain
 from parsim.solid.touch import centre_of, measure, normal_of, show
 
 _AT_REST = 5  # steps in half a period of what lies or is pressed together
@@ -19,7 +20,7 @@ _CALM = 0.25  # how far, over their depth, such contacts may still move
 
 
 @kernel
-def advance(m, elements, walls, law, pairs, shift, marks, slots, number, dt, reach, steps_per_contact, state):
+def advance(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, dt, reach, steps_per_contact, state):
     """Move all bodies over `dt`, s; (touching elements, steps, energy dissipated, work of the gate).
 
     Sub-steps of equal length while something touches; until the first touch, as long as nothing can touch. `state`
@@ -33,7 +34,7 @@ def advance(m, elements, walls, law, pairs, shift, marks, slots, number, dt, rea
         lost, state[0], state[1] = state[0], 0.0, 0.0
         return 0, 1, lost, 0.0
     lost, steps, work = state[0], 0, 0.0
-    touching, state[0] = press(m, elements, walls, law, pairs, shift, marks, slots, number, 0.0)
+    touching = press(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, 0.0)
     longest = _longest(m, elements, walls, law, pairs, shift, marks, slots, number, steps_per_contact, reach)
     rest, pending = dt, 0.0
     while rest > 0.0:
@@ -43,7 +44,8 @@ def advance(m, elements, walls, law, pairs, shift, marks, slots, number, dt, rea
             span = min(max(span, free_time(m, walls, pairs, shift, number, dt) - pending), rest)
         drift_involved(m, pending + 0.5 * span)
         lapse = state[1] + 0.5 * span
-        touching, state[0] = press(m, elements, walls, law, pairs, shift, marks, slots, number, lapse)
+        touching = press(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, lapse)
+        state[0] = restrain(m, pairs, shift, slots, tanks, number, span)
         heat, by_gate = kick_involved(m, span)
         lost, work, steps = lost + heat, work + by_gate, steps + 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
@@ -128,17 +130,18 @@ def _acceleration(m, b, p, by, n):
 
 
 @kernel
-def elastic(m, elements, walls, law, pairs, shift, marks, slots, number):
-    """Energy, J, in the foundations and friction springs of all elements that touch at the present pose."""
+def elastic(m, elements, walls, law, pairs, shift, marks, slots, tanks, number):
+    """Energy, J, that pairs can give back at the present pose: what their springs hold, at most their tanks."""
     energy = 0.0
     for c in range(number):
         apart, x, y, z = normal_of(m, walls, pairs, shift, c)
         if apart >= 0.0 or measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) == 0.0:
             continue
-        stiffness = coefficients(m, law, pairs[c, A], pairs[c, B])[0]
+        stiffness, potential = coefficients(m, law, pairs[c, A], pairs[c, B])[0], 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
                 squares = depth * depth + TANGENTIAL * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-                energy += 0.5 * stiffness * slots[slot, AREA] * squares
+                potential += 0.5 * stiffness * slots[slot, AREA] * squares
+        energy += min(potential, tanks[c, STORED])
     return energy

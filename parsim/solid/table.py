@@ -12,7 +12,8 @@ GIVEN, LOAD, LOSS, TOTAL = 25, 31, 37, 43  # force and torque: constant; of cont
 HALF, CELL = 49, 52  # half edges; distances of contact elements
 INERTIA, INVERSE, LIGHT = 55, 58, 61  # principal moments; 1 / moments; 1 / mass; the inverses 0 for what is held
 ROLE, MATERIAL = 62, 63
-WIDTH = 64
+MEAN = 64  # of velocity and spin before and after a kick
+WIDTH = 70
 
 HELD, ALONE, INVOLVED = 0, 1, 2  # roles: does not move; touches nothing in this step; may touch
 

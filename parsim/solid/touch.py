@@ -54,6 +54,7 @@ def _against_plane(elements, marks, slots, first, last, here, n, level):
         x, y, z = elements[i, 0], elements[i, 1], elements[i, 2]
         depth, area = -(height + u * x + v * y + w * z), _seen(elements, i, u, v, w)
         x, y, z = to_global(t, x, y, z)
+        depth = depth if area > 0.0 else 0.0  # faces that look away feel nothing, nor have they a friction spring
         _set(slots, slot, depth, area, cx + x, cy + y, cz + z)
         total += area if depth > 0.0 else 0.0
     slots[last, DEPTH] = slots[last, AREA] = 0.0

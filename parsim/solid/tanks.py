@@ -1,0 +1,166 @@
+"""What the contact of a pair may give back: no more than was put into it.
+
+Forces of contacts follow from the present geometry, and that jumps: elements come in at a rim, the normal changes to
+another feature. Each pair therefore has a tank: the energy, J, that its forces have taken out of the motion and not
+dissipated, at most the potential of its springs at the last two places. A kick of h changes the kinetic energy by
+h F . v, v the mean of the velocities before and after it, exactly; where a pair's part of that would exceed its tank,
+its forces become smaller. Kinetic energy and tanks together thus never grow, but by outside work, whatever the law,
+the geometry and the sub-step. Such tanks are known from bilateral teleoperation (Hannaford & Ryu 2002,
+doi 10.1109/70.988969).
+
+Columns of `tanks` (n, 19), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
+only dissipate over several kicks; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE, SHEAR, that of its
+friction springs; WORK of the pair's forces in this kick, J; LOADS and LOSSES (6 each), force and torque about the
+centre of body a, N and N m, and their dissipating part.
+"""
+
+import math
+
+import numpy as np
+
+from parsim.jit import kernel
+from parsim.solid.motion import foresee
+from parsim.solid.rotation import scaled
+from parsim.solid.search import FIRST, KEY, LAST, STRETCH, A, B
+from parsim.solid.separation import between
+from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, three, turn_at
+
+STORED, LOST, BEFORE, NOW, SHEAR_BEFORE, SHEAR, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 13
+_ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
+_ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
+
+
+def room_for_tanks(count):
+    """Empty tanks of `count` pairs."""
+    return np.zeros((count, 19))
+
+
+@kernel
+def recall_tanks(pairs, number, tanks, key, stored):
+    """Empty the first `number` tanks but for what is `stored` (n, 2), STORED and LOST, under their keys, in order."""
+    old = 0
+    for c in range(number):
+        tanks[c, :] = 0.0
+        while old < key.size and key[old] < pairs[c, KEY]:
+            old += 1
+        if old < key.size and key[old] == pairs[c, KEY]:
+            tanks[c, STORED], tanks[c, LOST] = stored[old, 0], stored[old, 1]
+
+
+@kernel
+def load_pair(m, pairs, shift, tanks, c, potential, shear, loads, losses):
+    """Let pair `c`, whose springs hold `potential`, J, `shear` of it, act on its bodies; loads are six numbers each."""
+    tanks[c, BEFORE], tanks[c, NOW] = tanks[c, NOW], potential
+    tanks[c, SHEAR_BEFORE], tanks[c, SHEAR] = tanks[c, SHEAR], shear
+    for k in range(6):
+        tanks[c, LOADS + k], tanks[c, LOSSES + k] = loads[k], losses[k]
+    _apply(m, pairs, shift, tanks, c, 1.0)
+
+
+@kernel
+def restrain(m, pairs, shift, slots, tanks, number, span):
+    """Make loads smaller where in the coming kick of `span`, s, they would take more from a tank than it holds.
+
+    Leaves the MEAN of all bodies; returns the energy in friction springs, J. 0.3 us a pair that touches, where nothing
+    is too large.
+    """
+    for c in range(number):
+        tanks[c, STORED] = min(tanks[c, STORED], tanks[c, BEFORE] + tanks[c, NOW])
+    rounds, over = 0, True
+    while over:
+        over = False
+        foresee(m, span)
+        for c in range(number):
+            if tanks[c, NOW] == 0.0:
+                continue
+            tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
+            if tanks[c, WORK] > tanks[c, STORED] + _ROUNDING * own:
+                over, share = True, 0.0
+                if rounds < _ROUNDS:
+                    share = _share(tanks[c, WORK], own, tanks[c, STORED])
+                _apply(m, pairs, shift, tanks, c, share - 1.0)
+                _slacken(pairs, slots, tanks, c, share)
+        rounds += 1
+    return _account(m, pairs, shift, tanks, number, span)
+
+
+@kernel
+def _slacken(pairs, slots, tanks, c, share):
+    """Leave pair `c` this share of its loads, and its friction springs the stretch that goes with theirs."""
+    for k in range(LOADS, LOSSES + 6):
+        tanks[c, k] *= share
+    tanks[c, SHEAR] *= share * share
+    for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
+        for k in range(STRETCH, STRETCH + 3):
+            slots[slot, k] *= share
+
+
+@kernel
+def _account(m, pairs, shift, tanks, number, span):
+    """Fill or drain the tanks by what the loads do in this kick; the energy in friction springs, J."""
+    shear = 0.0
+    for c in range(number):
+        if tanks[c, NOW] > 0.0:
+            room = tanks[c, BEFORE] + tanks[c, NOW]
+            lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, pairs, shift, tanks, c, LOSSES, span)[0]
+            lost = max(lost, -tanks[c, LOST])
+            tanks[c, LOST] = min(tanks[c, LOST] + lost, room)
+            tanks[c, STORED] = max(tanks[c, STORED] - tanks[c, WORK] - lost, 0.0)
+            shear += tanks[c, SHEAR]
+    return shear
+
+
+@kernel
+def _share(work, own, stored):
+    """Largest share of loads whose work is `stored`, as share (work - own) + share^2 own; all in J."""
+    other = work - own
+    root = math.sqrt(other * other + 4.0 * own * stored)
+    return 2.0 * stored / (root + other) if other > 0.0 else (root - other) / (2.0 * own)
+
+
+@kernel
+def _work(m, pairs, shift, tanks, c, at, span):
+    """(work of the loads of pair `c` in a kick, what of it they would do on bodies at rest), J."""
+    a, b, f = pairs[c, A], pairs[c, B], _six(tanks, c, at)
+    power, answer = _power(m, a, f)
+    if b >= 0:
+        more, softer = _power(m, b, _reaction(m, a, b, three(shift, c, 0), f))
+        power, answer = power + more, answer + softer
+    return span * power, 0.5 * span * span * answer
+
+
+@kernel
+def _power(m, b, f):
+    """(power of the loads `f` on body `b` at its MEAN, W; force times acceleration by them, W/s)."""
+    x, y, z = scaled(turn_at(m, b), three(m, b, INVERSE), f[3], f[4], f[5])
+    v, w = three(m, b, MEAN), three(m, b, MEAN + 3)
+    power = f[0] * v[0] + f[1] * v[1] + f[2] * v[2] + (f[3] * w[0] + f[4] * w[1] + f[5] * w[2])
+    square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
+    return power, m[b, LIGHT] * square + (f[3] * x + f[4] * y + f[5] * z)
+
+
+@kernel
+def _six(tanks, c, at):
+    return tanks[c, at], tanks[c, at + 1], tanks[c, at + 2], tanks[c, at + 3], tanks[c, at + 4], tanks[c, at + 5]
+
+
+@kernel
+def _reaction(m, a, b, by, f):
+    """Load on body b, about its centre, that answers the load `f` on body a."""
+    x, y, z = between(m, a, b, by)
+    p, q, r = f[3] + (y * f[2] - z * f[1]), f[4] + (z * f[0] - x * f[2]), f[5] + (x * f[1] - y * f[0])
+    return -f[0], -f[1], -f[2], -p, -q, -r
+
+
+@kernel
+def _apply(m, pairs, shift, tanks, c, share):
+    """Add this share of the loads of pair `c` to those of its bodies."""
+    a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
+    for at, to in ((LOADS, LOAD), (LOSSES, LOSS)):
+        f = _six(tanks, c, at)
+        for k in range(6):
+            m[a, to + k] += share * f[k]
+        if b >= 0:
+            g = _reaction(m, a, b, by, f)
+            for k in range(6):
+                m[b, to + k] += share * g[k]
