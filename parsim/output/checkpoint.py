@@ -19,12 +19,7 @@ from parsim.output.frames import replacing
 from parsim.state import OF_WATER, WATER_BYTES, Particles
 
 FOLDER, SUFFIX = "checkpoints", ".h5"
-<<<<<<< HEAD
-_KIND = b"parsim checkpoint, format 1\n"
-=======
-WATER_BYTES = sum(np.dtype(field.dtype).itemsize for field in FIELDS if field.name in OF_WATER)  # of one particle
 _KIND = b"parsim checkpoint, format 2\n"
->>>>>>> 27e7105 (Let no contact give back more than was put into it: a change of its normal flung a block off the gate's edge)
 _OVERHEAD = 65536  # bytes of a file besides its water, bodies not counted
 _BLOCK = 512  # bytes of the text; what HDF5 calls a user block
 _PIECE = 1 << 22  # bytes hashed at a time
