@@ -1,7 +1,7 @@
 """W = q^2 (1 - q)^3, q = r / re: r times the slope of the C2 function of Wendland (1995).
 
-With it the operators of the MPS method are those of smoothed particles with Wendland's kernel. At a support of 2.1
-spacings, which is cheap, it keeps the sum of e e W more isotropic than the C4 function does.
+With it the operators of the MPS method are those of smoothed particles with Wendland's kernel. At supports below 2.3
+spacings it keeps the sum of e e W more isotropic than the C4 function does, but water at rest boils with both.
 
 The sum of W itself tells the density badly: it is 0.4 to 0.7 % lower in water that flows than on the lattice of the
 same density, the sum of Wendland's function C2 with the particle's own share 0.04 to 0.2 % higher. Their mix
