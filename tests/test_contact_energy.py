@@ -1,11 +1,13 @@
 """No contact creates energy, whatever touches whatever, however it moves."""
 
 import numpy as np
-from contact_cases import GRAVITY, Plate, budget, case
+import pytest
+from contact_cases import FLAT, GRAVITY, Plate, blocks, budget, case, go
 
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.rotation import from_angles, turn_of, turned
+from parsim.solid.separation import direction
 
 DRAWS, STEPS = 2000, 10
 KEPT = ("position", "quaternion", "velocity", "spin")
@@ -74,3 +76,33 @@ def test_a_restart_amid_contacts_has_the_same_bits():
         for one, two in ((bodies, other), (contacts, resumed)):
             assert {k: v.tobytes() for k, v in one.kept().items()} == {k: v.tobytes() for k, v in two.kept().items()}
     assert pressed > 20
+
+
+def test_normals_turn_at_most_twenty_times_as_fast_as_the_boxes():
+    """Those of nearly parallel edges would turn without bound, and depths with them, within a step."""
+    random, turn, crossing = np.random.default_rng(4), 1e-4, 0
+    for _ in range(300):
+        tilt = np.array(turn_of(*random.normal(0.0, 10.0 ** random.uniform(-4.0, -0.5), 3)))
+        small = turn_of(*(turn * v for v in (0.6, 0.0, 0.8)))
+        normals = []
+        for pose in (tilt, np.array(turned(small, tilt))):
+            bodies = blocks([(0.5, 0.5, 0.5), (0.5, 0.5, 0.51)], quaternion=[pose, FLAT])
+            contacts = Contacts(bodies, case(walls=()))
+            contacts._prepare(bodies, bodies.fixed, 0.0, 0.0)
+            normals.append(np.array([direction(contacts._table, 0, 1, feature) for feature in range(6, 15)]))
+        both = normals[0].any(axis=1) & normals[1].any(axis=1)
+        crossing += np.count_nonzero(both[[0, 4, 8]])
+        assert np.linalg.norm(normals[1] - normals[0], axis=1)[both].max() < 1.01 * turn / 0.05
+    assert 20 < crossing < 600, "some edges cross, some are all but parallel"
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.01, 1.0, 3.0, 5.0])
+def test_an_elastic_block_leaves_the_edge_of_a_gate_no_faster_than_it_came(yaw):
+    bodies = blocks([(0.5, 0.5, 0.4)], quaternion=[from_angles((0.0, 60.0, yaw))], velocity=[(0.0, 0.0, 0.5)])
+    top = bodies.surface()[0][np.argmax(bodies.surface()[0][:, 2])]
+    bodies.position[0] += 0.5025 - top[0], 0.0, 0.5 - 1e-4 - top[2]
+    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), friction=0.0, restitution=1.0), gate=Moving(0.5, 0.0))
+    came = bodies.kinetic_energy()
+    go(bodies, contacts, 1e-4, 150)
+    assert contacts.count == 0 and abs(bodies.spin[0, 1]) > 1.0, "it has been hit"
+    assert 0.95 * came < bodies.kinetic_energy() < (1.0 + 1e-6) * came
