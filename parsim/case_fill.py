@@ -173,14 +173,22 @@ def _touches(fill, other, axis):
 
 
 def _amount(case, fill):
-    """Doubts about a fill whose edges are no multiples of the spacing: its particles are not the water asked for."""
-    edges = {"xyz"[a]: fill.max[a] - fill.min[a] for a in case.axes}
-    asked = math.prod(edges.values())
-    placed = math.prod(max(1, round(edge / case.spacing)) * case.spacing for edge in edges.values())
-    if abs(placed / asked - 1.0) > _MISSED:
-        parts = {name: edge / case.spacing for name, edge in edges.items()}
-        off = [f"{name} = {edges[name]:.6g}" for name, part in parts.items() if abs(part - round(part)) > 1e-6]
+    """Doubts about a fill that is no whole number of particles across: these are not the water asked for."""
+    edges, rows = {}, []
+    for axis in case.axes:
+        low, high = fill.min[axis], fill.max[axis]
+        edges["xyz"[axis]], count = high - low, max(1, round((high - low) / case.spacing))
+        if axis == 0 and case.gate:
+            least, most = case.gate.min_x, case.gate.max_x
+            edges["x"] -= max(0.0, min(high, most) - max(low, least))
+            places = low + (np.arange(count) + 0.5) * ((high - low) / count)
+            count -= int(np.count_nonzero((places >= least) & (places <= most)))
+        rows.append(count)
+    asked, placed = math.prod(edges.values()), math.prod(rows) * case.spacing ** len(case.axes)
+    if asked > 0.0 and abs(placed / asked - 1.0) > _MISSED:
+        parts = zip(edges.items(), rows, strict=True)
+        off = [f"{name} = {edge:.6g}" for (name, edge), count in parts if abs(edge / case.spacing - count) > 1e-6]
         yield (
             f": {asked:.4g} m3 of water asked for, {placed:.4g} m3 placed ({placed / asked - 1.0:+.1%}): spacing = "
-            f"{case.spacing!r} does not divide its {', '.join(off)} m"
+            f"{case.spacing!r} does not divide its {', '.join(off)} m{' without the gate' if case.gate else ''}"
         )

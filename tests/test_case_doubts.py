@@ -96,6 +96,15 @@ def test_water_that_is_not_the_amount_asked_for_is_told_with_both_numbers(box, w
     assert words in said if words else "asked for" not in said
 
 
+@pytest.mark.parametrize(("low", "high", "words"), [
+    (0.2, 0.21, None), (0.202, 0.208, "0.0394 m3 of water asked for, 0.039 m3 placed (-1.0%)"),
+    (0.206, 0.214, "0.0392 m3 of water asked for, 0.04 m3 placed (+2.0%)"),
+])  # fmt: skip
+def test_water_in_the_place_of_the_gate_is_not_asked_for(low, high, words):
+    said = told(fills((0.0, 0.4, 0.0, 0.1)) | {"gate": {"min_x": low, "max_x": high}})
+    assert words in said if words else "asked for" not in said
+
+
 def test_a_table_whose_mean_is_not_one_is_told():
     table = {"kind": "table", "heights": [0.0, 0.2], "shares": [1.0, 1.5]}
     assert "profile.shares: their mean over the depth is 1.25" in told(

@@ -6,8 +6,10 @@ from test_water import TANK, simulation
 
 from parsim.case import Fill, parse
 from parsim.case_fill import profile_shares
+from parsim.fluid.wcmps import WCMPS
 from parsim.setup import flow, water
 from parsim.shapes import Lattice, disordered, outside_box
+from parsim.solid.bodies import from_case
 from parsim.solid.rotation import matrices
 from parsim.state import FLUID, make_id
 
@@ -133,17 +135,34 @@ def test_disorder_moves_no_water_into_bodies_or_the_gate(seed):
     assert (clear(after) < 0.01).sum() > 20, "some do stand beside them"
 
 
-def test_touching_fills_press_as_one_water():
-    high = TANK | {"box": {"max": [0.2, 1.0, 0.6]}}
-    whole = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.4]}]
-    parts = [{"min": [0.0, 0.0, z], "max": [0.2, 1.0, z + 0.2]} for z in (0.2, 0.0)]
-    numbers = []
-    for s in (simulation(high | {"water": {"fill": fills}}) for fills in (whole, parts)):
-        p, at = s.domain.particles, s.near.fluid
-        order = np.lexsort((p.x[at], np.round(p.z[at], 9)))
-        numbers.append(p.n[at][order])
-    assert numbers[1] == pytest.approx(numbers[0], rel=1e-12)
-    assert np.ptp(numbers[0]) > 0.002 * numbers[0][0]
+def cut(low, high, random, depth):
+    """Boxes of lattice points, (2, 2) in x and z, that a box from `low` to `high` is cut into at random."""
+    axis = int(random.integers(2))
+    if not depth or high[axis] - low[axis] < 2:
+        return [(low, high)]
+    at = int(random.integers(low[axis] + 1, high[axis]))
+    middle = [(at if a == axis else high[a]) for a in range(2)], [(at if a == axis else low[a]) for a in range(2)]
+    return [*cut(low, middle[0], random, depth - 1), *cut(middle[1], high, random, depth - 1)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_touching_fills_are_one_water_however_they_are_cut(seed):
+    random = np.random.default_rng(seed)
+    boxes = cut([0, 0], [20, 17], random, 3)
+    random.shuffle(boxes)
+    parts = [{"min": [0.01 * x0, 0.0, 0.01 * z0], "max": [0.01 * x1, 1.0, 0.01 * z1]}
+             for (x0, z0), (x1, z1) in boxes]  # fmt: skip
+    body = {"name": "b", "shape": {"size": [0.05, 1.0, 0.06]}, "density": 800.0, "material": "wood",
+            "position": [0.1, 0.5, "float"]}
+    found = []
+    for fills in ([{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.17]}], parts):
+        case, free = (parse(TANK | {"bodies": bodies, "water": {"fill": fills}}) for bodies in ([body], []))
+        p = water(free, from_case(free), WCMPS(free))
+        order = np.lexsort((np.round(p.x, 9), np.round(p.z, 9)))
+        found.append((case.bodies[0].position[2], p.x[order], p.z[order], p.n[order]))
+    for one, many in zip(*found, strict=True):
+        assert many == pytest.approx(one, rel=1e-12, abs=1e-12)
+    assert np.ptp(found[0][3]) > 0.001 * found[0][3][0], "the pressure rises with depth"
 
 
 def test_slabs_start_with_the_parts_of_one_disorder_and_flow():

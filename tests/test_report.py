@@ -141,6 +141,15 @@ def test_measures_are_those_of_the_series(run):
     assert numbers[2].model is None and numbers[0].model == 0.30
 
 
+def test_a_wet_bed_has_no_front_that_arrives(tmp_path):
+    wet = parsim.open(fake_run.make(tmp_path / "wet", times=(0.0, 0.4), spacing=0.03))
+    path = wet.folder / "series/front.csv"
+    titles, rows = path.read_text().splitlines()[:2], path.read_text().splitlines()[2:]
+    assert measures.front_arrival(wet) is not None
+    path.write_text("\n".join([*titles, *(row.rpartition(",")[0] + ",0.69" for row in rows)]) + "\n")
+    assert measures.front_arrival(wet) is None
+
+
 def test_a_tilted_block_reaches_deeper(run):
     track = {key: np.array([value]) for key, value in
              {"time": 0.0, "x": 0.05, "y": 0.05, "z": 0.15, "q0": np.cos(np.pi / 8), "q1": 0.0, "q2": np.sin(np.pi / 8),

@@ -30,12 +30,13 @@ def body_tracks(run):
 
 
 def front_arrival(run):
-    """Time (s) at which the front comes within two spacings of the downstream end, None if it does not."""
+    """Time (s) at which the front comes within two spacings of the downstream end, None if it does not or is there."""
     front = columns(run, "front")
     if front is None:
         return None
-    arrived = np.flatnonzero((front["x"] >= run.case["box"]["max"][0] - 2 * run.case["spacing"]) & (front["time"] >= 0))
-    return float(front["time"][arrived[0]]) if len(arrived) else None
+    later = front["time"] >= 0
+    there = front["x"][later] >= run.case["box"]["max"][0] - 2 * run.case["spacing"]
+    return float(front["time"][later][there.argmax()]) if there.any() and not there[0] else None
 
 
 def energy_created(energy):
