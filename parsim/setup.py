@@ -84,15 +84,15 @@ def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
     Ids count the points of all fills, so that they are the same for any slab. Velocities are those of the fills, but
     for water that settles first: see `flow`.
     """
-    parts, number = [], 0
-    for fill in case.water.fill:
-        points = Lattice(fill.min, fill.max, case.spacing, case.axes)
+    lattices = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
+    parts, number, taken = [], 0, taken_by_bodies(lattices, case, bodies)
+    for fill, points in zip(case.water.fill, lattices, strict=True):
         x, y, z = points.rows
         open_water = here(x)
         if case.gate is not None:
             open_water &= (x < case.gate.min_x) | (x > case.gate.max_x)
         mine = points.within(open_water, np.ones(y.size, bool), np.ones(z.size, bool))
-        mine = mine[~np.isin(mine, taken_by_bodies(points, case, bodies))]
+        mine = mine[~np.isin(number + mine, taken)]
         place = kept_out(points, mine, disordered(points, mine, number, case.water.disorder, case.axes), case, bodies)
         parts.append(_particles(case, scheme, fill, place, number + mine))
         number += points.size

@@ -97,19 +97,29 @@ def beside_bodies(points, case, bodies):
     return np.unique(np.concatenate(found))
 
 
-def taken_by_bodies(points, case, bodies):
-    """Numbers (n,) of the points of a Lattice that are not water, since bodies and the gaps beside them take them."""
-    number = beside_bodies(points, case, bodies)
+def taken_by_bodies(lattices, case, bodies):
+    """Numbers (n,) of the points that are not water, since bodies and the gaps beside them take them.
+
+    Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together.
+    """
+    number, place, spacing, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
+    for points in lattices:
+        beside = beside_bodies(points, case, bodies)
+        number.append(first + beside)
+        place.append(points.points(beside))
+        spacing.append(np.broadcast_to(points.spacing, (beside.size, 3)))
+        first += points.size
+    number, place, spacing = (np.concatenate(parts) for parts in (number, place, spacing))
     if not number.size:
         return number
-    place, spacing = points.points(number), points.spacing
     nearest, taken = solids(place, case, bodies)
     near = np.flatnonzero(nearest < case.spacing)
     volume = 0.0
     fine = (np.arange(_FINE) + 0.5) / _FINE - 0.5
-    steps = [fine * spacing[a] if a in case.axes else np.zeros(1) for a in range(3)]
+    steps = [fine if a in case.axes else np.zeros(1) for a in range(3)]
     for offset in np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3):
-        volume += solids(place[near] + offset, case, bodies)[1].mean() * near.size if near.size else 0.0
+        inside = solids(place[near] + offset * spacing[near], case, bodies)[1]
+        volume += inside.mean() * near.size if near.size else 0.0
     count = round(volume / _FINE ** len(case.axes))
     depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near]
     depth = np.round(depth / case.spacing, 6)  # points of one lattice plane are equally deep

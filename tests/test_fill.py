@@ -152,7 +152,7 @@ def test_touching_fills_are_one_water_however_they_are_cut(seed):
     random.shuffle(boxes)
     parts = [{"min": [0.01 * x0, 0.0, 0.01 * z0], "max": [0.01 * x1, 1.0, 0.01 * z1]}
              for (x0, z0), (x1, z1) in boxes]  # fmt: skip
-    body = {"name": "b", "shape": {"size": [0.05, 1.0, 0.06]}, "density": 800.0, "material": "wood",
+    body = {"name": "b", "shape": {"size": [0.053, 1.0, 0.06]}, "density": 800.0, "material": "wood",
             "position": [0.1, 0.5, "float"]}
     found = []
     for fills in ([{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.17]}], parts):
@@ -160,6 +160,8 @@ def test_touching_fills_are_one_water_however_they_are_cut(seed):
         p = water(free, from_case(free), WCMPS(free))
         order = np.lexsort((np.round(p.x, 9), np.round(p.z, 9)))
         found.append((case.bodies[0].position[2], p.x[order], p.z[order], p.n[order]))
+        immersed = water(case, from_case(case), WCMPS(case))
+        assert len(immersed) == pytest.approx(20 * 17 - 5.3 * 4.8, abs=0.6), "less what the body displaces"
     for one, many in zip(*found, strict=True):
         assert many == pytest.approx(one, rel=1e-12, abs=1e-12)
     assert np.ptp(found[0][3]) > 0.001 * found[0][3][0], "the pressure rises with depth"

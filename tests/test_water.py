@@ -160,7 +160,7 @@ def test_outside_box_is_the_distance_to_the_surface():
 def test_the_fill_leaves_out_the_volume_of_the_bodies_wherever_they_are(height):
     case = parse(POOL | {"bodies": [SQUARE | {"position": [0.2034, 0.5, height]}]})
     points = Lattice((0.0, 0.0, 0.0), (0.4, 1.0, 0.3), 0.01, (0, 2))
-    gone = points.points(taken_by_bodies(points, case, from_case(case)))
+    gone = points.points(taken_by_bodies([points], case, from_case(case)))
     assert len(gone) == pytest.approx(36, abs=1)
     assert np.abs(gone - [0.2034, 0.5, height]).max() < 0.04
 
