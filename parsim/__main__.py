@@ -165,7 +165,7 @@ def check(
     ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")] = 1,
     table: TableFile = None,
 ):
-    """Check a case, or all runs of a table, and estimate size, memory and time, without running anything."""
+    """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
     from parsim.check import main as checked
 
     checked(case, changes, until, ranks, table)

@@ -184,7 +184,7 @@ class Run(Table):
 
 
 class Gauge(Table):
-    """A place where the water level is written."""
+    """A place where the water level is written: the top of the highest connected water within 1.5 spacings."""
 
     name: Name = Field(description="name, used in results: a letter, then letters, digits, _ or -")
     x: Number = Field(description="place, m")
