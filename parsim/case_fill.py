@@ -181,8 +181,8 @@ def _amount(case, fill):
         if axis == 0 and case.gate:
             least, most = case.gate.min_x, case.gate.max_x
             edges["x"] -= max(0.0, min(high, most) - max(low, least))
-            places = low + (np.arange(count) + 0.5) * ((high - low) / count)
-            count -= int(np.count_nonzero((places >= least) & (places <= most)))
+            first, last = (count * (place - low) / (high - low) - 0.5 for place in (least, most))  # among the rows
+            count -= max(0, math.floor(min(last, count - 1)) - math.ceil(max(first, 0.0)) + 1)
         rows.append(count)
     asked, placed = math.prod(edges.values()), math.prod(rows) * case.spacing ** len(case.axes)
     if asked > 0.0 and abs(placed / asked - 1.0) > _MISSED:
