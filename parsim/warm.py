@@ -17,6 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from parsim import launch, variant
+from parsim.errors import InputError
 
 PATIENCE = 900.0  # s that a rank waits for another one's compiler
 _FOREIGN = ("OMPI_", "PMIX", "PMI_", "PRTE", "SLURM_")  # the compiler is no rank of the job
@@ -37,14 +38,18 @@ def prepare():
     """Choose the kernel variant, if none is named yet, and return when its machine code is in the cache.
 
     Rank 0 chooses for all. The first rank of each machine has compiled what is missing. Raises InputError for a variant
-    that this processor does not have.
+    that this processor does not have, or other than that of the kernels which this process has loaded already.
     """
     from parsim.comm import Comm
 
     comm = Comm()
     os.environ[variant.NAME] = variant.checked(comm.share(_chosen() if comm.rank == 0 else None))
     variant.apply()
-    mark = variant.mark(os.environ["NUMBA_CACHE_DIR"])
+    folder = os.environ.get("NUMBA_CACHE_DIR", "")
+    if Path(folder).name != variant.code():
+        raise InputError(f"kernel = {os.environ[variant.NAME]}: this process has loaded numba with other settings "
+                         "already; start parsim in a process of its own")
+    mark = variant.mark(folder)
     if _whole(mark):
         return
     local = next((int(os.environ[name]) for name in _LOCAL if name in os.environ), launch.world()[0])

@@ -10,14 +10,21 @@ from pathlib import Path
 
 import pytest
 
-from parsim import launch
+from parsim import launch, warm
 
 PATIENCE = 120  # s for one job
+MANY = 1000  # tests, about all of them
 
 
 def pytest_configure(config):
     """Give every mpirun a time limit of its own, also those that a test starts without the fixture."""
     os.environ.setdefault("MPIEXEC_TIMEOUT", str(2 * PATIENCE))
+
+
+def pytest_collection_finish(session):
+    """Compile all kernels ahead of many tests; few may need few of them, which are then compiled as they are used."""
+    if len(session.items) > MANY and "parsim.jit" in sys.modules:
+        warm.prepare()
 
 
 def _arguments(program):

@@ -61,6 +61,15 @@ def test_an_unknown_variant_is_refused_by_name(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.skipif(len(variant.possible()) == 1, reason="this processor has one variant")
+def test_another_variant_than_that_which_is_loaded_is_refused(tmp_path, capsys, monkeypatch):
+    warm.prepare()
+    other = next(name for name in variant.possible() if name != os.environ[variant.NAME])
+    monkeypatch.setenv(variant.NAME, other)
+    assert main(["run", str(CASE), "-o", str(tmp_path / "out")]) == 2
+    assert f"error: kernel = {other}: this process has loaded numba" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("seconds, best", [
     ({"256": 1.0, "512": 0.99}, "256"), ({"256": 1.0, "512": 0.8, "512-gather": 0.9}, "512"), ({"512": 1.0}, "256"),
 ])  # fmt: skip
