@@ -9,17 +9,17 @@ from typing import Annotated
 import typer
 
 from parsim import __version__, exits, stop
-from parsim.errors import InputError, WriteError
+from parsim.errors import InputError
+from parsim.examples import path_of
 
 app = typer.Typer(
     help="Free-surface flow carrying solids. SI units; exit codes: 0 done, 1 failed, 2 bad input, 3 a comparison "
     "missed, 74 cannot write, 75 checkpoint written.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 
-CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML), or the name of an example")]
 Folder = Annotated[Path, typer.Argument(metavar="OUT", help="output folder of a run")]
 Changes = Annotated[
     list[str] | None,
@@ -72,6 +72,7 @@ def run(
     """Run a case. Under mpirun or srun every rank runs this command."""
     from parsim.check import load
 
+    case = path_of(case)
     loaded, limit = load(case, changes, until, table, row), _settings(threads, kernel, walltime)
     if ranks:
         words = ["run", case, "-o", out, *_words(changes, table, row), *["--force"] * force]
@@ -108,6 +109,7 @@ def resume(
     limit = _settings(threads, kernel, walltime)
     if case is None and (changes or table or row):
         raise InputError("--set, --table and --row belong to the case that --case names")
+    case = path_of(case) if case else None
     wanted = load(case, changes, until, table, row) if case else None
     if ranks:
         words = ["resume", out, *(["--case", case] if case else []), *_words(changes, table, row)]
@@ -168,7 +170,7 @@ def check(
     """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
     from parsim.check import main as checked
 
-    checked(case, changes, until, ranks, table)
+    checked(path_of(case), changes, until, ranks, table)
 
 
 @command
@@ -228,18 +230,19 @@ def schema():
 
 
 @command
-def new(name: Annotated[str, typer.Argument(metavar="NAME", help="writes NAME.toml")]):
-    """Write a commented case to start from; never overwrites."""
-    path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    text = Path(__file__).with_name("starter.toml").read_text(encoding="utf-8")
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise InputError(f"NAME = {name}: {path} exists already and is not overwritten; choose another name") from None
-    except (OSError, ValueError) as error:
-        raise WriteError(path, getattr(error, "strerror", None) or error) from None
-    print(f"wrote {path}; next: parsim check {path}")
+def new(
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="writes NAME.toml")] = None,
+    example: Annotated[str | None, typer.Option(
+        "--from", metavar="EXAMPLE", help="start from an example, in place of a commented case")] = None,
+    listed: Annotated[bool, typer.Option("--list", help="print the examples")] = False,
+):
+    """Write a case to start from; never overwrites."""
+    from parsim import new as cases
+
+    if listed:
+        cases.show()
+    else:
+        cases.main(name, example)
 
 
 def _version(asked: bool):

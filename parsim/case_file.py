@@ -4,6 +4,7 @@ import json
 import re
 import tomllib
 
+from parsim import examples
 from parsim.errors import InputError, nearest, suggestion
 
 
@@ -62,12 +63,12 @@ def _given_twice(text, reason):
 
 
 def _nearest_file(path):
-    """The case file beside `path` whose name is like that of `path`, or None."""
+    """The case file beside `path` whose name is like that of `path`, else an example's name, or None."""
     try:
         stems = {p.stem: p for p in path.parent.glob("*.toml")}
     except OSError:
         return None
-    return stems.get(nearest(path.name.removesuffix(".toml"), stems))
+    return stems.get(nearest(path.name.removesuffix(".toml"), stems)) or examples.like(path.as_posix())
 
 
 def _merged(below, above):

@@ -2,6 +2,8 @@
 
 import json
 import os
+import shutil
+import subprocess
 import sys
 import types
 from pathlib import Path
@@ -10,7 +12,7 @@ import pytest
 from example_cases import ROOT, write
 from fake_run import make
 
-from parsim import __version__, estimate, launch
+from parsim import __version__, estimate, examples, launch, warm
 from parsim.__main__ import main
 from parsim.case import load
 from parsim.errors import InputError, WriteError
@@ -33,6 +35,7 @@ def solver(monkeypatch):
 
     fake.run = run
     monkeypatch.setitem(sys.modules, "parsim.solver", fake)
+    monkeypatch.setattr(warm, "prepare", lambda: None)  # it needs no kernels
     return fake
 
 
@@ -184,6 +187,61 @@ def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, caps
     assert "river.toml exists already" in capsys.readouterr().err
     assert (tmp_path / "river.toml").read_text() == "mine"
     assert main(["new", "no/such/river"]) == 74
+
+
+def test_an_example_is_found_by_name_anywhere_and_can_be_had_as_one_file(tmp_path, capsys, monkeypatch):
+    """From an installed package, where no checkout is around."""
+    shutil.copytree(ROOT / "cases", tmp_path / "site" / "parsim" / "cases")
+    monkeypatch.setattr(examples, "__file__", str(tmp_path / "site" / "parsim" / "examples.py"))
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "--list"]) == 0
+    assert "ice_release/4_blocks_dry     Ice release, case 1: four blocks, a dry bed\n" in capsys.readouterr().out
+    names = {f"{path.parent.name}/{path.stem}" for path in (ROOT / "cases").rglob("*.toml") if path.stem[0] != "_"}
+    assert set(examples.paths()) == names
+    for name in names:
+        assert main(["check", name]) == 0
+        assert main(["new", "mine", "--from", name]) == 0
+        assert load(tmp_path / "mine.toml") == load(ROOT / "cases" / f"{name}.toml")
+        (tmp_path / "mine.toml").unlink()
+
+
+def test_a_run_of_an_example_takes_its_reference_along(solver, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "ice_release/4_blocks_dry", "-o", "out"]) == 0
+    assert solver.calls[0][1] == BLOCKS
+    (tmp_path / "ice_release").mkdir()
+    (tmp_path / "ice_release" / "4_blocks_dry").write_text((ROOT / "parsim" / "starter.toml").read_text())
+    assert main(["run", "ice_release/4_blocks_dry", "-o", "out"]) == 0
+    assert solver.calls[1][1] == Path("ice_release/4_blocks_dry"), "a file comes before an example"
+
+
+@pytest.mark.parametrize("words, said", [
+    (["check", "ice_release/4_block_dry"], "no such file; did you mean ice_release/4_blocks_dry?"),
+    (["check", "4_blocks_dry"], "no such file; did you mean ice_release/4_blocks_dry?"),
+    (["check", "river"], "error: river: no such file\n"),
+    (["new", "mine", "--from", "9_blocks_dri"], "still_water/3d; did you mean ice_release/9_blocks_dry?"),
+    (["new", "mine", "--from", "river"], "--from river: no such example; allowed: dam_break/2d, "),
+    (["new"], "NAME: missing"),
+])  # fmt: skip
+def test_an_unknown_example_is_told_with_the_nearest(words, said, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_shell_completes_commands():
+    asked = {"_PARSIM_COMPLETE": "complete_bash", "COMP_WORDS": "parsim re", "COMP_CWORD": "1"}
+    told = subprocess.run([sys.executable, "-m", "parsim"], env=os.environ | asked, capture_output=True, text=True)
+    assert told.stdout.split() == ["resume", "report"], told.stderr
+
+
+def test_a_new_case_names_the_schema_that_the_readme_has_made(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    main(["new", "mine"])
+    first = (tmp_path / "mine.toml").read_text().split("\n", 1)[0]
+    assert first.startswith("#:schema ./")
+    assert f"parsim schema > {first.removeprefix('#:schema ./')}\n" in (ROOT / "README.md").read_text()
 
 
 def test_schema_is_json(capsys):
