@@ -261,6 +261,7 @@ def test_info_tells_of_a_run(tmp_path, capsys):
 FAILING = """
 import sys, types
 from mpi4py import MPI
+from parsim import warm
 from parsim.__main__ import main
 from parsim.errors import InputError, WriteError
 
@@ -271,6 +272,7 @@ def run(case, source, out, force, walltime):
     MPI.COMM_WORLD.recv(source=1)
 
 sys.modules["parsim.solver"] = types.SimpleNamespace(run=run)
+warm.prepare = lambda: None
 sys.exit(main(["run", sys.argv[2], "-o", "out"]))
 """
 
