@@ -5,7 +5,7 @@ another feature. Each pair therefore has a tank: the energy, J, that its forces 
 dissipated, at most the potential of its springs at the last two places. A kick of h changes the kinetic energy by
 h F . v, v the mean of the velocities before and after it, exactly; where a pair's part of that would exceed its tank,
 its forces become smaller. Kinetic energy and tanks together thus never grow, but by outside work, whatever the law,
-the geometry and the sub-step. Such tanks are known from bilateral teleoperation (Hannaford & Ryu 2002,
+the geometry and the sub-step. Such accounts are known from haptic interfaces (Hannaford & Ryu 2002,
 doi 10.1109/70.988969).
 
 Columns of `tanks` (n, 19), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
