@@ -178,7 +178,9 @@ class Run(Table):
     cfl: Real = Field(1.0, gt=0, le=1.75, description="time step over spacing / (speed of sound + largest speed)")
     skin: Real = Field(0.4, gt=0, le=2, description="margin of the neighbour lists over the spacing")
     rebuild_at_most: Count = Field(20, description="steps between rebuilds of the neighbour lists, at most")
-    outside: Literal["remove", "stop"] = Field("remove", description="what becomes of water that leaves the box")
+    outside: Literal["remove", "stop"] = Field(
+        "remove", description="what becomes of water and bodies that leave the box"
+    )
     patience: Positive = Field(600.0, description="wall time without progress after which a rank is taken for hung, s")
     balance_every: Count = Field(1, description="rebuilds between looks at the balance of the ranks")
 

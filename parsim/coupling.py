@@ -60,6 +60,7 @@ class BodySamples:
             raise InputError(f"bodies.{self.bodies.names[self.body[beside.argmax()]]}: reaches a periodic side at t = "
                              f"{time:.6g} s; water and bodies do not see each other across it: keep off, or use walls")
         cells = slab.cells(x, y, z)
+        cells[self.bodies.gone[self.body]] = -1
         self.here = cells >= 0
         at = np.flatnonzero(slab.awake(cells))
         return Particles(at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x[at], y=y[at],

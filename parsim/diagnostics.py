@@ -26,17 +26,18 @@ def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
 
 
 @kernel
-def misplaced(at, x, y, z, low, high, closed, slack, centre, turn, half, gate_low, gate_high, barrier, count):
-    """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (4,); the 4th at the surface.
+def misplaced(at, x, y, z, walls, ends, slack, centre, turn, half, gate_low, gate_high, barrier, count):
+    """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
 
-    low, high (3,) are the box, closed (3, 2) its walls; centre (b, 3), turn (b, 3, 3), half (b, 3) the bodies.
+    walls (2, 3): lowest and highest corner between the walls, infinite where there is none; ends (2, 3): of where
+    there are walls; centre (b, 3), turn (b, 3, 3), half (b, 3): the bodies.
     """
     for i in at:
-        r = (x[i], y[i], z[i])
+        r, within, behind = (x[i], y[i], z[i]), True, False
         for a in range(3):
-            if (closed[a, 0] and r[a] < low[a] - slack) or (closed[a, 1] and r[a] > high[a] + slack):
-                count[0] += 1
-                break
+            within = within and ends[0, a] <= r[a] <= ends[1, a]
+            behind = behind or r[a] < walls[0, a] - slack or r[a] > walls[1, a] + slack
+        count[0] += within and behind
         for b in range(centre.shape[0]):
             inside = True
             for a in range(3):

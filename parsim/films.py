@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from parsim.boundary.wall import ends_of_walls
 from parsim.fluid.weights.choice import weight_at
 from parsim.jit import kernel
 from parsim.solid.rotation import matrices, to_body, to_global
@@ -111,19 +112,26 @@ def _layers(lattice):
 
 
 def _planes(case):
-    """The walls of the box: rows (axis, side, level), side -1 for the low ones."""
+    """The walls of the box: rows (axis, side, level, lowest and highest corner), side -1 for the low ones."""
     sides = ((a, sign) for a in case.axes for sign in (-1, 1))
-    rows = [(a, sign, (case.box.min if sign < 0 else case.box.max)[a]) for a, sign in sides
+    ends = np.concatenate(ends_of_walls(case))
+    rows = [(a, sign, (case.box.min if sign < 0 else case.box.max)[a], *ends) for a, sign in sides
             if getattr(case.box.faces, f"{'xyz'[a]}_{'min' if sign < 0 else 'max'}") == "wall"]
-    return np.array(rows, float).reshape(-1, 3)
+    return np.array(rows, float).reshape(-1, 9)
 
 
 @kernel
 def gap_to_plane(x, n, plane):
-    """Distance along the direction n (3,) from x (3,) to a wall in front of it; inf where it faces away."""
+    """Distance along the direction n (3,) from x (3,) to a wall in front of it; inf where it faces away or ends."""
     a = int(plane[0])
     along = n[a] * plane[1]
-    return (plane[2] - x[a]) * plane[1] / along if along > 0.5 else np.inf
+    if along <= 0.5:
+        return np.inf
+    gap = (plane[2] - x[a]) * plane[1] / along
+    for k in range(3):
+        if not plane[3 + k] <= x[k] + (gap * n[k] if k != a else 0.0) <= plane[6 + k]:
+            return np.inf
+    return gap
 
 
 @kernel

@@ -43,9 +43,10 @@ def collapsed(simulation, dt):
 
 
 def outside(simulation, rows):
-    """The error for water that has left the box; rows (n, 9): step, time, id, place, velocity."""
-    rows = rows[:_SHOWN]
-    return RunError(f"{_when(simulation)}: water has left the box: {'; '.join(_particle(row[2:]) for row in rows)}. "
+    """The error for what has left the box: rows of step, time, what, id, place, velocity."""
+    told = [_moving("particle " + str(int(row[3])) if row[2] == "water" else row[2], row[4:]) for row in rows]
+    more = f"; and {len(told) - _SHOWN} more" if len(told) > _SHOWN else ""
+    return RunError(f"{_when(simulation)}: has left the box: {'; '.join(told[:_SHOWN])}{more}. "
                     'With run.outside = "remove" it is counted and taken out')
 
 
@@ -54,8 +55,12 @@ def _when(simulation):
 
 
 def _particle(row):
-    place, speed = (", ".join(f"{value:.4g}" for value in row[part]) for part in (slice(1, 4), slice(4, 7)))
-    return f"particle {int(row[0])} at ({place}) m with ({speed}) m/s"
+    return _moving(f"particle {int(row[0])}", row[1:])
+
+
+def _moving(what, values):
+    place, speed = (", ".join(f"{value:.4g}" for value in values[part]) for part in (slice(0, 3), slice(3, 6)))
+    return f"{what} at ({place}) m with ({speed}) m/s"
 
 
 def _likely(simulation):

@@ -162,6 +162,7 @@ class Simulation:
 
     def _rebuild(self, fluid):
         domain, near = self.domain, self.near
+        left = self._take_out()
         with self.timers("rebuild"):
             domain.rebuild(fluid, self.time)
         with self.timers("neighbours"):
@@ -175,20 +176,30 @@ class Simulation:
         with self.timers("sums"):
             numbers = near.fluid.size + near.boundary.size, near.fluid.size, len(domain.gone)
             self.active, self.fluid_count, gone = domain.count(*numbers)
-        if gone:
-            self._note_gone()
+        if gone or left:
+            self._note_gone(left)
         p, at = domain.particles, near.fluid
         self._start = np.stack([p.x[at], p.y[at], p.z[at]])
         self.moved, self._solid_moved, self.since = 0.0, 0.0, 0
         self.rebuilds += 1
 
-    def _note_gone(self):
+    def _take_out(self):
+        """Take out the bodies that are wholly outside the grid, as the domain does with water: rows of `gone`."""
+        grid, axes = self.domain.grid, list(self.case.axes)
+        low, high = np.full(3, -np.inf), np.full(3, np.inf)
+        low[axes], high[axes] = grid.low[axes], grid.high[axes]
+        around = list(grid.periodic)
+        low[around], high[around] = -np.inf, np.inf
+        at, rows = self.bodies.take_out(low, high, self.time)
+        return [(self.step_count + 1, self.time, f"body {self.bodies.names[b]}", b, *row)
+                for b, row in zip(at, rows, strict=True)]
+
+    def _note_gone(self, left):
         """Collect, on rank 0, what the last rebuild has found outside the box."""
         p = self.domain.gone
-        when = np.full(len(p), self.step_count + 1), np.full(len(p), self.time)
-        rows = np.stack([*when, p.id, p.x, p.y, p.z, p.u, p.v, p.w], 1)
-        rows = np.concatenate([np.zeros((0, 9)), *self.comm.stream(rows)])
-        self.gone.extend(rows[np.argsort(rows[:, 2])])
+        rows = np.concatenate([np.zeros((0, 7)), *self.comm.stream(np.stack([p.id, p.x, p.y, p.z, p.u, p.v, p.w], 1))])
+        rows = left + [(self.step_count + 1, self.time, "water", *row) for row in rows[np.argsort(rows[:, 0])]]
+        self.gone.extend(rows if self.comm.rank == 0 else ())
         if self.case.run.outside == "stop":
             raise guards.outside(self, rows)
 

@@ -145,7 +145,7 @@ def _series(folder, times):
         for i, (t, k, p) in enumerate(zip(times, kinetic, potential, strict=True))
     ]
     _table(folder, "energy", rows)
-    rows = [(i, t, 1000, 1200, 3000, 0, 0, 0, 0, 200, 3.375e-3 * (1 + 0.002 * t)) for i, t in enumerate(times)]
+    rows = [(i, t, 1000, 1200, 3000, 0, 0, 0, 0, 200, 3.375e-3 * (1 + 0.002 * t), 0) for i, t in enumerate(times)]
     _table(folder, "counts", rows)
     bodies, loads, gauges, front = [], [], [], []
     for i, t in enumerate(times):

@@ -71,11 +71,13 @@ def test_patches_cover_the_body():
 
 
 def test_gaps_are_measured_along_the_normal():
-    floor, side = np.array([2.0, -1.0, 0.0]), np.array([0.0, 1.0, 0.5])
+    ends = [-np.inf, -np.inf, -np.inf, 0.3, np.inf, np.inf]
+    floor, side = np.array([2.0, -1.0, 0.0, *ends]), np.array([0.0, 1.0, 0.5, *ends])
     down, slanted = (0.0, 0.0, -1.0), (0.0, 0.6, -0.8)
     assert gap_to_plane((0.2, 0.0, 0.03), down, floor) == pytest.approx(0.03)
     assert gap_to_plane((0.2, 0.0, 0.04), slanted, floor) == pytest.approx(0.05)
     assert gap_to_plane((0.2, 0.0, 0.03), down, side) == np.inf
+    assert gap_to_plane((0.31, 0.0, 0.03), down, floor) == np.inf, "beyond the open side"
     half = np.array([0.1, 0.2, 0.3])
     assert gap_to_box((0.0, 0.0, 0.35), down, half, 0.01) == pytest.approx(0.05)
     assert gap_to_box((0.0, 0.0, 0.295), down, half, 0.01) == pytest.approx(-0.005), "an overlap closes the gap"

@@ -59,7 +59,7 @@ def test_every_column_has_rows_of_one_length_and_one_unit(run, name):
     assert list(series) == list(units) and len(series["step"]) > 3
     assert {len(values) for values in series.values()} == {len(series["step"])}
     texts = {column for column, values in series.items() if values.dtype.kind == "U"}
-    assert texts <= {"body", "kind", "gauge"}
+    assert texts <= {"body", "kind", "gauge", "what"}
     assert all(units[column] == "-" for column in texts | {"step"}) and units["time"] == "s"
 
 

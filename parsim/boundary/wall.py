@@ -26,6 +26,14 @@ def samples_of(kind, x, y, z):
     return Particles(count, id=make_id(kind, np.arange(count)), kind=kind, x=flat[0], y=flat[1], z=flat[2])
 
 
+def ends_of_walls(case):
+    """Lowest and highest corner (3,), m, of where there are walls: they end at the open sides, and only there."""
+    faces = case.box.faces
+    low = [case.box.min[a] if getattr(faces, low) == "open" else -np.inf for a, (low, _) in enumerate(_SIDES)]
+    high = [case.box.max[a] if getattr(faces, high) == "open" else np.inf for a, (_, high) in enumerate(_SIDES)]
+    return np.array(low), np.array(high)
+
+
 class Walls:
     """The wall particles of a case; those that see no water sleep and cost one look each per rebuild."""
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from parsim import diagnostics
+from parsim.boundary.wall import ends_of_walls
 from parsim.case_bodies import GAUGE_REACH
 from parsim.solid.rotation import matrices
 
@@ -12,11 +13,12 @@ class Measure:
 
     def __init__(self, case, simulation):
         self.case = case
-        faces = case.box.faces
-        self.closed = np.array([[getattr(faces, f"{a}_min") == "wall", getattr(faces, f"{a}_max") == "wall"]
-                                for a in "xyz"])
-        if case.dimensions == 2:
-            self.closed[1] = False
+        self.ends, self.walls = np.array(ends_of_walls(case)), np.full((2, 3), np.inf)
+        self.walls[0] = -np.inf
+        for axis in case.axes:
+            for row, side, end in ((0, "min", case.box.min), (1, "max", case.box.max)):
+                if getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall":
+                    self.walls[row, axis] = end[axis]
         middle = 0.5 * (case.box.min[1] + case.box.max[1])
         self.gauges = np.array([[g.x, middle if g.y is None else g.y] for g in case.output.gauges]).reshape(-1, 2)
 
@@ -45,13 +47,12 @@ class Measure:
     def _counts(self, s):
         p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
         gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)
-        diagnostics.misplaced(at, p.x, p.y, p.z, np.array(self.case.box.min), np.array(self.case.box.max), self.closed,
-                              0.25 * self.case.spacing, s.bodies.position, matrices(s.bodies.quaternion),
-                              s.bodies.half, *gate, count)
+        diagnostics.misplaced(at, p.x, p.y, p.z, self.walls, self.ends, 0.25 * self.case.spacing, s.bodies.position,
+                              matrices(s.bodies.quaternion), s.bodies.half, *gate, count)
         surface = diagnostics.count_surface(at, p.surface)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, surface)
         every = fluid + len(s.models.walls) + len(s.models.samples)
-        return [fluid, s.active, every, *rest, self.volume]
+        return [fluid, s.active, every, *rest, self.volume, int(s.bodies.gone.sum())]
 
     def _front(self, s):
         p, width = s.domain.particles, 2.0 * self.case.spacing
@@ -74,10 +75,10 @@ class Measure:
                 for g, (x, y), z in zip(self.case.output.gauges, self.gauges, level, strict=True)]
 
     def _bodies(self, s):
-        b = s.bodies
-        return [[name, *map(float, np.concatenate([b.position[k], b.quaternion[k], b.velocity[k], b.spin[k]]))]
-                for k, name in enumerate(b.names)]
+        values = np.hstack([s.bodies.shown(name) for name in ("position", "quaternion", "velocity", "spin")])
+        return [[name, *map(float, row)] for name, row in zip(s.bodies.names, values, strict=True)]
 
     def _loads(self, s):
-        return [[name, kind, *map(float, getattr(s.bodies, f"{kind}_load")[k])]
-                for k, name in enumerate(s.bodies.names) for kind in ("water", "contact", "gravity")]
+        loads = {kind: s.bodies.shown(f"{kind}_load") for kind in ("water", "contact", "gravity")}
+        return [[name, kind, *map(float, load[k])]
+                for k, name in enumerate(s.bodies.names) for kind, load in loads.items()]

@@ -124,8 +124,10 @@ class Recorder:
             self.tables[name].flush()
 
     def _tell_gone(self, simulation):
-        for step, time, ident, *rest in simulation.gone:
-            self.tables["lost"].row(int(step), float(time), int(ident), *map(float, rest))
+        for step, time, what, ident, *rest in simulation.gone:
+            self.tables["lost"].row(int(step), float(time), what, int(ident), *map(float, rest))
+            if what != "water":
+                self.progress.say(f"{what} has left the box: taken out at t = {time:.6g} s")
         self.tables["lost"].flush()
         simulation.gone.clear()
 
@@ -144,7 +146,7 @@ class Recorder:
         if self.main and len(simulation.bodies.mass):
             name = f"frames/bodies_{number:06d}.vtkhdf"
             self.frames["bodies"].append((name, time))
-            fields = {field: getattr(simulation.bodies, field) for field in _BODY}
+            fields = {field: simulation.bodies.shown(field) for field in _BODY}
             write_bodies(self.out / name, *simulation.bodies.surface(), fields, time, step)
         if self.main:
             self._write_indices()

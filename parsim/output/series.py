@@ -22,7 +22,7 @@ TABLES = {
         },
         "counts": {
             "fluid": "-", "active": "-", "all": "-", "in_walls": "-", "in_bodies": "-", "in_gate": "-", "lost": "-",
-            "surface": "-", "volume": "m3",
+            "surface": "-", "volume": "m3", "bodies_left": "-",
         },
         "bodies": {
             "body": "-", "x": "m", "y": "m", "z": "m", "q0": "-", "q1": "-", "q2": "-", "q3": "-",
@@ -33,7 +33,7 @@ TABLES = {
         },
         "gauges": {"gauge": "-", "x": "m", "y": "m", "level": "m"},
         "front": {"x": "m"},
-        "lost": {"id": "-", "x": "m", "y": "m", "z": "m", "u": "m/s", "v": "m/s", "w": "m/s"},
+        "lost": {"what": "-", "id": "-", "x": "m", "y": "m", "z": "m", "u": "m/s", "v": "m/s", "w": "m/s"},
     }.items()
 }  # fmt: skip
 

@@ -8,7 +8,8 @@ from parsim.jit import kernel
 from parsim.solid.rotation import free_turn, from_angles, matrices, matrix, scaled
 
 _KEPT = ("position", "quaternion", "velocity", "spin", "acceleration", "angular_acceleration", "water_load",
-         "contact_load", "gravity_load", "film")
+         "contact_load", "gravity_load", "film", "left")
+_FAR = 1e6  # m that what has been taken out is moved on, out of reach of everything
 _SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners of a box
 _QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
 
@@ -22,7 +23,7 @@ class Bodies:
     m/s; spin (nb, 3), global axes, rad/s.
     Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
     force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin, and how well
-    each face is fed with it, 0 to 1 (`parsim.films`).
+    each face is fed with it, 0 to 1 (`parsim.films`). left (nb,): time, s, at which it was taken out, inf before.
     """
 
     def __init__(self, half, mass, position, quaternion=None, velocity=0.0, spin=0.0, *, names=None, material=0,
@@ -38,7 +39,7 @@ class Bodies:
         self.velocity[still], self.spin[still] = 0.0, 0.0
         self.quaternion = _rows((1.0, 0.0, 0.0, 0.0) if quaternion is None else quaternion, count, 4)
         self.acceleration, self.angular_acceleration = np.zeros((count, 3)), np.zeros((count, 3))
-        self.film = np.zeros((count, 7))
+        self.film, self.left = np.zeros((count, 7)), np.full(count, math.inf)
         self.water_load, self.contact_load, self.gravity_load = (np.zeros((count, 6)) for _ in range(3))
 
     def __len__(self):
@@ -55,7 +56,38 @@ class Bodies:
 
     def held(self, time):
         """Which bodies do not move in a step that begins at `time`, s: (nb,) bool."""
-        return self.fixed | (time < self.released)
+        return self.fixed | (time < self.released) | self.gone
+
+    @property
+    def gone(self):
+        """Which bodies have been taken out: (nb,) bool."""
+        return self.left < math.inf
+
+    def take_out(self, low, high, time):
+        """Take out the bodies that lie wholly outside `low` to `high` (3,), m: numbers, place and velocity (n, 6).
+
+        They stay, at rest, far out on the side where they left.
+        """
+        if not len(self):
+            return np.zeros(0, int), np.zeros((0, 6))
+        reach = (np.abs(matrices(self.quaternion)) * self.half[:, None]).sum(2)
+        below, above = self.position + reach < low, self.position - reach > high
+        at = np.flatnonzero((below | above).any(1) & ~self.gone)
+        rows = np.hstack([self.position[at], self.velocity[at]])
+        for b in at:
+            axis = int(np.argmax(below[b] | above[b]))
+            self.position[b, axis] += math.copysign(_FAR, -1.0 if below[b, axis] else 1.0)
+            for of in (self.velocity, self.spin, self.acceleration, self.angular_acceleration, self.water_load,
+                       self.contact_load, self.gravity_load, self.film):
+                of[b] = 0.0
+        self.left[at] = time
+        return at, rows
+
+    def shown(self, name):
+        """The attribute `name`, with nan in the rows of bodies that have been taken out."""
+        values = getattr(self, name).copy()
+        values[self.gone] = math.nan
+        return values
 
     def drifted(self, dt):
         """Pose after `dt`, s, at the present velocity and angular momentum: (position, quaternion), new arrays."""
@@ -64,12 +96,15 @@ class Bodies:
         return position, quaternion
 
     def surface(self):
-        """The closed surface: points (8 nb, 3), m; quads (6 nb, 4), counter-clockwise from outside; body (6 nb,)."""
-        turn, count = matrices(self.quaternion), len(self)
+        """The closed surface of what is there: points (8 n, 3), m; quads (6 n, 4), anticlockwise seen from outside.
+
+        Also the body of each quad, (6 n,).
+        """
+        turn, there = matrices(self.quaternion), np.flatnonzero(~self.gone)
         points = np.array([self.position[b] + (_SIGNS * self.half[b] * turn[b][:, None]).sum(-1).T
-                           for b in range(count)]).reshape(-1, 3)
-        quads = (_QUADS + 8 * np.arange(count)[:, None, None]).reshape(-1, 4)
-        return points, quads, np.repeat(np.arange(count), 6)
+                           for b in there]).reshape(-1, 3)
+        quads = (_QUADS + 8 * np.arange(there.size)[:, None, None]).reshape(-1, 4)
+        return points, quads, np.repeat(there, 6)
 
     def surface_speed(self):
         """Bound of the speed of any point of any body, m/s: |v| + |w| R."""
@@ -99,7 +134,7 @@ class Bodies:
 
     def potential_energy(self, gravity):
         """Potential energy of all bodies in `gravity` (3,), m/s2; zero at the origin; J."""
-        return -math.fsum(m * g * x for m, at in zip(self.mass, self.position, strict=True)
+        return -math.fsum(m * g * x for m, at, gone in zip(self.mass, self.position, self.gone, strict=True) if not gone
                           for g, x in zip(gravity, at, strict=True))
 
 

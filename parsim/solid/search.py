@@ -7,7 +7,8 @@ image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
 INDEX (its row in the table of elements, -1: crossing of edges), TOUCHING; `slots`: DEPTH, m, AREA, m2, POINT, m,
-STRETCH, m, of its friction spring. Walls, rows of four: normal inwards, level (normal . x > level inside).
+STRETCH, m, of its friction spring. Walls, rows of ten: normal inwards, level (normal . x > level inside), and the
+lowest and highest corner of where they are.
 """
 
 import math
@@ -163,9 +164,10 @@ def _list(m, first, elements, walls, pairs, shift, c, body, other, offset, reach
     for index in range(first[body], first[body + 1]):
         x, y, z = to_global(t, elements[index, 0], elements[index, 1], elements[index, 2])
         if other < 0:
-            w = -1 - other
-            height = walls[w, 0] * (x + m[body, POSITION]) + walls[w, 1] * (y + m[body, POSITION + 1])
-            near = height + walls[w, 2] * (z + m[body, POSITION + 2]) - walls[w, 3] < reach
+            w = walls[-1 - other]
+            x, y, z = x + m[body, POSITION], y + m[body, POSITION + 1], z + m[body, POSITION + 2]
+            near = w[0] * x + w[1] * y + w[2] * z - w[3] < reach and w[4] <= x <= w[7] and w[5] <= y <= w[8]
+            near = near and w[6] <= z <= w[9]
         else:
             by = (sign * shift[c, 0], sign * shift[c, 1], sign * shift[c, 2])
             dx, dy, dz = between(m, body, other, by)
