@@ -40,12 +40,11 @@ def doubts(case):
 
 def _support(case):
     """Doubts about a support with which water at rest does not stay so (2D, ten rows, 1 s)."""
-    water = case.water
-    if water.weight == "mps" or water.support >= 2.6:
+    if case.water.support >= 2.6:
         return []
     return [
-        f'water.support = {water.support!r}: too small for weight = "{water.weight}": water at rest boils at 2.1, and '
-        "at 2.3 to 2.5 its pressure scatters by 0.1 to 1 % where that is 0.01 % at 3.1; 2.7 or more is quiet"
+        f"water.support = {case.water.support!r}: too small: water at rest boils at 2.1, and at 2.3 to 2.5 its "
+        "pressure scatters by 0.1 to 1 % where that is 0.01 % at 3.1; 2.7 or more is quiet"
     ]
 
 
