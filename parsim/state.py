@@ -11,6 +11,7 @@ FLUID, BODY, GATE_UP, GATE_DOWN, WALL = 0, 1, 2, 3, 4
 INTERNAL, VICINITY, SURFACE, DETACHED = 0, 1, 2, 3
 POSITION = ("x", "y", "z")
 VELOCITY = ("u", "v", "w")
+ISOTROPY = ("txx", "txy", "txz", "tyz", "tzz")
 _ID_BITS = 56
 
 
@@ -37,6 +38,11 @@ FIELDS = (
     Field("w", "f8", "m/s", True, "velocity up"),
     Field("n", "f8", "-", True, "number density"),
     Field("rate", "f8", "1/s", True, "relative rate of change of n"),
+    Field("txx", "f8", "-", True, "what makes the sum of e e W isotropic, times which the gradient is taken, less one"),
+    Field("txy", "f8", "-", True, "the same: xy; its trace is zero"),
+    Field("txz", "f8", "-", True, "the same: xz"),
+    Field("tyz", "f8", "-", True, "the same: yz"),
+    Field("tzz", "f8", "-", True, "the same: zz"),
     Field("surface", "u1", "-", True, "internal, vicinity of the surface, surface, detached"),
     Field("scale", "f8", "-", True, "volume of the sample over spacing^d"),
     Field("image", "u1", "-", True, "1 for the periodic image of another particle"),
@@ -57,7 +63,8 @@ FIELDS = (
 )
 NAMES = tuple(field.name for field in FIELDS)
 KEPT = tuple(field.name for field in FIELDS if field.kept)
-OF_WATER = ("id", *POSITION, *VELOCITY, "n", "rate", "surface")  # kept fields that differ between particles of water
+# kept fields that differ between particles of water
+OF_WATER = ("id", *POSITION, *VELOCITY, "n", "rate", *ISOTROPY, "surface")
 WATER_BYTES = sum(np.dtype(field.dtype).itemsize for field in FIELDS if field.name in OF_WATER)  # kept, of a particle
 _DTYPES = {field.name: field.dtype for field in FIELDS}
 _DEFAULTS = {"body": -1, "sample": -1, "scale": 1.0}

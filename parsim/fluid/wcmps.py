@@ -12,7 +12,7 @@ import numpy as np
 
 from parsim.fluid import kernels, surface
 from parsim.fluid.reference import Lattice
-from parsim.state import SURFACE
+from parsim.state import ISOTROPY, SURFACE
 from parsim.timers import Timers
 
 _BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
@@ -24,7 +24,7 @@ _LARGEST_MACH = 0.2
 class WCMPS:
     """The scheme for one case: constants, and the sweeps in their order."""
 
-    STATE = ("x", "y", "z", "u", "v", "w", "n", "rate")  # what the halos need of the full step
+    STATE = ("x", "y", "z", "u", "v", "w", "n", "rate", *ISOTROPY)  # what the halos need of the full step
 
     def __init__(self, case, timers=None):
         water = case.water
@@ -94,9 +94,9 @@ class WCMPS:
         lattice = self.lattice
         with self.timers("momentum"):
             kernels.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                             p.scale, lattice.weight, lattice.own, self._whole, self.close2, self._push,
-                             self.viscosity * self._viscous, self._hit(dt), dt, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz,
-                             p.bx, p.by, p.bz)
+                             p.txx, p.txy, p.txz, p.tyz, p.tzz, p.scale, lattice.weight, lattice.own, self._whole,
+                             self.close2, self._push, self.viscosity * self._viscous, self._hit(dt), dt, p.ax, p.ay,
+                             p.az, p.c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
 
     def react(self, domain, near, dt):
         """Forces of the water on the body samples `near.body`, N: (samples, 3), and how they depend on accelerations.
@@ -106,8 +106,8 @@ class WCMPS:
         p, count = domain.particles, near.body.size
         out, lever, response = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6))
         kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az,
-                         p.p, p.scale, self.lattice.weight, self.density, self.close2, self._push, self._hit(dt), dt,
-                         out, lever, response)
+                         p.p, p.txx, p.txy, p.txz, p.tyz, p.tzz, p.scale, self.lattice.weight, self.density,
+                         self.close2, self._push, self._hit(dt), dt, out, lever, response)
         out *= self.mass
         response *= self.mass
         return out, lever, response
@@ -147,8 +147,9 @@ class WCMPS:
         with self.timers("continuity"):
             kernels.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                                p.bx, p.by, p.bz, p.scale, lattice.weight, lattice.number, self._gradient, spread,
-                               *(self._down * self._slope), _CROWD / lattice.spacing, _CLOSE * lattice.spacing, p.rate,
-                               p.ax, p.ay, p.az, p.ex, p.ey, p.ez)
+                               *(self._down * self._slope), _CROWD / lattice.spacing, _CLOSE * lattice.spacing,
+                               float(lattice.dimensions), p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez,
+                               p.txx, p.txy, p.txz, p.tyz, p.tzz)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
