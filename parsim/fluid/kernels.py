@@ -14,7 +14,7 @@ from parsim.fluid.weights.choice import weight_at
 from parsim.jit import each, kernel, prange, rows
 from parsim.state import DETACHED, FLUID
 
-LEAST_ISOTROPIC = 0.3  # what is less so, drops and edges, is made isotropic by that much only
+LEAST_ISOTROPIC = 0.1  # what is less so, drops and edges, is made isotropic by that much only
 
 
 @each
