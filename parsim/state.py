@@ -83,6 +83,11 @@ class Particles:
     def __len__(self):
         return self.id.size
 
+    @property
+    def isotropy(self):
+        """The fields of the isotropic gradient, as kernels take them."""
+        return tuple(getattr(self, name) for name in ISOTROPY)
+
     def take(self, index):
         """The particles at `index` (any numpy index), kept fields only."""
         kept = {name: getattr(self, name)[index] for name in KEPT}

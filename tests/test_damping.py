@@ -7,7 +7,7 @@ import pytest
 from clouds import lattice, listed
 from test_sweeps import sweep
 
-from parsim.fluid import kernels
+from parsim.fluid import kernels, updates
 from parsim.fluid.reference import Lattice
 from parsim.fluid.weights import WEIGHTS
 
@@ -34,7 +34,7 @@ def twofold(domain, near, scheme, velocity):
     domain.refresh("bx", "by", "bz")
     kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                       *nothing, p.ex, p.ey, p.ez)
+                       3.0, *nothing, p.ex, p.ey, p.ez, tuple(np.zeros((5, len(p)))))
     return [np.stack(fields, 1)[near.fluid] for fields in ((p.bx, p.by, p.bz), (p.ex, p.ey, p.ez))]
 
 
@@ -73,7 +73,7 @@ def test_damping_takes_energy_from_whatever_moves(box, damping):
         before = math.fsum((velocity[near.fluid] ** 2).ravel())
         product = math.fsum((velocity[near.fluid] * twice).ravel())
         assert product == pytest.approx(math.fsum((once**2).ravel()), rel=1e-10), "the sums are symmetric"
-        kernels.damp(near.fluid, share_taken(scheme, damping), p.ex, p.ey, p.ez, p.u, p.v, p.w)
+        updates.damp(near.fluid, share_taken(scheme, damping), p.ex, p.ey, p.ez, p.u, p.v, p.w)
         after = math.fsum((np.stack([p.u, p.v, p.w], 1)[near.fluid] ** 2).ravel())
         left.append(after / before)
     assert max(left) < 1.0 and min(left[:3]) > 0.0

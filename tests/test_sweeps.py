@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from clouds import PLAIN, cloud, lattice, listed
 
-from parsim.fluid import kernels
+from parsim.fluid import kernels, updates
 from parsim.fluid.reference import Lattice
 from parsim.fluid.weights import WEIGHTS
 from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
@@ -16,10 +16,12 @@ SIZE, RE = np.array([1.3, 0.9, 0.7]), 0.2
 
 @pytest.fixture(scope="module")
 def mixed():
-    """A random cloud with walls, its lists, and random pressures and viscous sums."""
+    """A random cloud with walls, its lists, and random pressures, viscous sums and corrections of the water."""
     domain, near = listed(cloud(500, SIZE, seed=4, walls=200), SIZE, RE)
     p, rng = domain.particles, np.random.default_rng(8)
     p.p[:], p.bx[:], p.by[:], p.bz[:] = rng.normal(size=(4, len(p)))
+    for field in p.isotropy:
+        field[near.fluid] = 0.1 * rng.normal(size=near.fluid.size)
     return p, near
 
 
@@ -27,6 +29,12 @@ def mixed():
 def weight(request):
     """The name of each weight."""
     return request.param
+
+
+def corrections(p):
+    """The corrections of the gradient as matrices (n, 3, 3)."""
+    xx, xy, xz, yz, zz = p.isotropy
+    return np.moveaxis(np.array([[xx, xy, xz], [xy, -xx - zz, yz], [xz, yz, zz]]), 2, 0)
 
 
 def row(p, near, i, part, weight):
@@ -65,9 +73,9 @@ def test_momentum_sweep(mixed, weight):
     p.ax[near.boundary] = 3.0
     c, b = np.zeros(len(p)), np.zeros((3, len(p)))
     kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                     p.scale, WEIGHTS[weight].of_radius(RE), own, whole, close**2, push, drag, hit, dt, p.ax, p.ay,
-                     p.az, c, p.nx, p.ny, p.nz, *b)
-    struck = 0
+                     p.isotropy, p.scale, WEIGHTS[weight].of_radius(RE), own, whole, close**2, push, drag, hit, dt, p.ax,
+                     p.ay, p.az, c, p.nx, p.ny, p.nz, *b)
+    struck, t = 0, corrections(p)
     for i in near.fluid[::7]:
         a, normal, viscous, total = np.zeros(3), np.zeros(3), np.zeros(3), own
         for part in ("fluid", "boundary"):
@@ -83,6 +91,8 @@ def test_momentum_sweep(mixed, weight):
                 viscous = ((approach * w / r**4)[:, None] * d).sum(0)
                 a += drag * viscous
             a += ((f * share)[:, None] * d).sum(0)
+            both = p.p[i] * t[i] + p.p[j, None, None] * t[j]
+            a -= push * ((w * share / r**2)[:, None] * (both @ d[:, :, None])[:, :, 0]).sum(0)
             normal += ((w * share / r**2)[:, None] * d).sum(0)
             total += (measure * share).sum()
         assert [p.ax[i], p.ay[i], p.az[i]] == pytest.approx(a, rel=1e-10, abs=1e-9)
@@ -95,16 +105,18 @@ def test_momentum_sweep(mixed, weight):
 def test_continuity_sweep(mixed, weight):
     p, near = mixed
     n0, flow, spread, h, crowd, close = 50.0, 0.4, 0.9, (0.1, -0.2, 0.3), 30.0, 0.12
+    found = tuple(np.zeros((5, len(p))))
     kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, WEIGHTS[weight].of_radius(RE), n0, flow, spread, *h, crowd, close,
-                       p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez)
+                       3.0, p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez, found)
     sums = np.stack([p.bx, p.by, p.bz], 1)
     for i in near.fluid[::7]:
-        rate, apart, twofold = 0.0, np.zeros(3), np.zeros(3)
+        rate, apart, twofold, m = 0.0, np.zeros(3), np.zeros(3), np.zeros((3, 3))
         for part in ("fluid", "boundary"):
             j, d, v, r, w, _ = row(p, near, i, part, weight)
             g = w / r**2 * (1.0 if part == "fluid" else p.scale[j])
             rate -= flow * ((d * v).sum(1) * g).sum()
+            m += np.einsum("n,ni,nj->ij", g, d, d)
             apart += ((g * (2.0 + crowd * np.maximum(close - r, 0.0)))[:, None] * d).sum(0)
             if part == "fluid":
                 rate += spread * (w * ((p.n[j] - p.n[i]) / n0 - d @ h)).sum()
@@ -112,6 +124,10 @@ def test_continuity_sweep(mixed, weight):
         assert p.rate[i] == pytest.approx(rate, rel=1e-9, abs=1e-9)
         assert [p.ax[i], p.ay[i], p.az[i]] == pytest.approx(apart, rel=1e-9, abs=1e-9)
         assert [p.ex[i], p.ey[i], p.ez[i]] == pytest.approx(twofold, rel=1e-9, abs=1e-9)
+        exact = np.eye(3) - 3.0 * m / np.trace(m)
+        exact *= min(1.0, kernels.LEAST_ISOTROPIC / np.sqrt((exact**2).sum()))
+        five = exact[[0, 0, 0, 1, 2], [0, 1, 2, 2, 2]]
+        assert [field[i] for field in found] == pytest.approx(five, rel=1e-9, abs=1e-12)
 
 
 def test_boundary_pressure_sweep(mixed, weight):
@@ -139,12 +155,12 @@ def test_what_bodies_get_is_what_the_water_lost(mixed, weight):
     acceleration = np.random.default_rng(4).normal(size=(3, len(p)))
     back, a = np.zeros((near.boundary.size, 3)), np.stack([acceleration, acceleration])
     kernels.reaction(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *acceleration,
-                     p.p, p.scale, of_radius, 3.0, close2, push, hit, dt, back, np.empty_like(back),
+                     p.p, p.isotropy, p.scale, of_radius, 3.0, close2, push, hit, dt, back, np.empty_like(back),
                      np.empty((len(back), 6)))
     nothing = np.zeros((7, len(p)))
     for k, ends in enumerate((near.end, near.middle)):
         kernels.momentum(near.fluid, near.start, near.middle, ends, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                         p.scale, of_radius, 1.0, 50.0, close2, push, 0.7, hit, dt, *a[k], *nothing)
+                         p.isotropy, p.scale, of_radius, 1.0, 50.0, close2, push, 0.7, hit, dt, *a[k], *nothing)
     lost = [math.fsum((a[0][axis] - a[1][axis])[near.fluid]) for axis in range(3)]
     got = [math.fsum(back[:, axis]) for axis in range(3)]
     assert np.abs(got).max() > 1.0
@@ -164,8 +180,8 @@ def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
         kernels.boundary_pressure(at, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, *a, *gravity, rho,
                                   of_radius, pressure)
         out, lever, response = np.empty((at.size, 3)), np.empty((at.size, 3)), np.empty((at.size, 6))
-        kernels.reaction(at, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *a, pressure, p.scale,
-                         of_radius, rho, 0.1**2, push, hit, dt, out, lever, response)
+        kernels.reaction(at, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *a, pressure,
+                         p.isotropy, p.scale, of_radius, rho, 0.1**2, push, hit, dt, out, lever, response)
         found.append((out, pressure[at], lever, response))
     (before, low, lever, response), (after, high, _, _) = found
     matrix = response[:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]]
@@ -179,8 +195,8 @@ def sweep(p, near, scheme):
     """Pair accelerations of all particles and their viscous sums with the constants of a lattice; concentrations."""
     c = np.zeros(len(p))
     kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                     p.scale, scheme.weight, scheme.own, scheme.whole, 0.0, scheme.dimensions / scheme.number, 1.0, 0.0,
-                     0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
+                     p.isotropy, p.scale, scheme.weight, scheme.own, scheme.whole, 0.0, scheme.dimensions / scheme.number,
+                     1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
     return c
 
 
@@ -191,6 +207,8 @@ def test_pair_forces_add_up_to_nothing(weight):
     domain, near = listed(every, size, 0.31, (True, True, True))
     p, scheme = domain.particles, Lattice(3, 0.1, 3.1, weight)
     p.p[:] = rng.uniform(-1.0, 1.0, len(every))[p.id]
+    for field in p.isotropy:
+        field[:] = rng.uniform(-0.1, 0.1, len(every))[p.id]
     sweep(p, near, scheme)
     for field in (p.ax, p.ay, p.az):
         total = math.fsum(field[near.fluid])
@@ -214,7 +232,7 @@ def wave_error(count, weight):
     p.u[:] = velocity
     kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 3 / scheme.number, 0.0, 0.0, 0.0, 0.0,
-                       0.0, 0.0, p.rate, *np.zeros((6, len(p))))
+                       0.0, 0.0, 3.0, p.rate, *np.zeros((6, len(p))), tuple(np.zeros((5, len(p)))))
     exact = k * np.cos(k * p.x[near.fluid])
     return [np.abs(field[near.fluid] + exact).max() / k for field in (p.ax, p.rate)]
 
@@ -227,5 +245,24 @@ def test_gradient_and_divergence_are_of_second_order_on_a_lattice(weight):
 
 def test_extremes_tell_of_what_is_not_finite():
     start, zero, bad = np.zeros((3, 2)), np.zeros(2), np.array([0.0, math.nan])
-    assert kernels.extremes(np.arange(2), zero, bad, zero, zero, zero, zero, start)[0] == math.inf
-    assert kernels.extremes(np.arange(2), zero + 2.0, zero, zero, zero, zero + 3.0, zero, start) == (4.0, 9.0)
+    assert updates.extremes(np.arange(2), zero, bad, zero, zero, zero, zero, start)[0] == math.inf
+    assert updates.extremes(np.arange(2), zero + 2.0, zero, zero, zero, zero + 3.0, zero, start) == (4.0, 9.0)
+
+
+@pytest.mark.parametrize("strain", [[[0.1, 0.0, 0.0], [0.0, -0.05, 0.0], [0.0, 0.0, -0.05]],
+                                    [[0.0, 0.2, 0.0], [0.0, 0.0, 0.1], [0.0, 0.0, 0.0]]])  # fmt: skip
+def test_a_strained_lattice_under_even_pressure_has_no_shear_stress(weight, strain):
+    """The virial of the pair forces of one particle, p sum e e W: isotropic to the second order of what it was off."""
+    scheme, m = Lattice(3, 0.1, 3.1, weight), np.zeros((3, 3))
+    for offset in np.ndindex(9, 9, 9):
+        d = (np.eye(3) + strain) @ (0.1 * (np.array(offset) - 4.0))
+        if 0.0 < (r := np.linalg.norm(d)) < scheme.radius:
+            m += PLAIN[weight](np.array([r]), scheme.radius)[0] / r**2 * np.outer(d, d)
+    xx, xy, xz, yz, zz = kernels.isotropic(m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2], 3.0)
+    corrected = (np.eye(3) + np.array([[xx, xy, xz], [xy, -xx - zz, yz], [xz, yz, zz]])) @ m
+
+    def uneven(matrix):
+        return np.linalg.norm(matrix / np.trace(matrix) - np.eye(3) / 3.0)
+
+    assert uneven(corrected) < 3.0 * uneven(m) ** 2 or uneven(m) * 3.0 > kernels.LEAST_ISOTROPIC
+    assert uneven(corrected) < uneven(m)

@@ -51,12 +51,13 @@ def sweeps(simulation, calls):
     out = [np.zeros(len(p)) for _ in range(10)]
 
     def momentum(index):
-        kernels.momentum(*lists, index, *place, *flow, p.p, p.scale, lattice.weight, lattice.own, lattice.whole,
-                         scheme.close2, 1.0, 1.0, 1.0, 1.0, *out)
+        kernels.momentum(*lists, index, *place, *flow, p.p, p.isotropy, p.scale, lattice.weight, lattice.own,
+                         lattice.whole, scheme.close2, 1.0, 1.0, 1.0, 1.0, *out)
 
     def continuity(index):
         kernels.continuity(*lists, index, *place, *flow, p.n, p.bx, p.by, p.bz, p.scale, lattice.weight,
-                           lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing, *out[:7])
+                           lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing,
+                           float(lattice.dimensions), *out[:7], tuple(np.zeros((5, len(p)))))
 
     works = {
         "momentum": lambda: momentum(near.index),

@@ -76,17 +76,18 @@ def boundary_pressure(at, start, middle, index, body, x, y, z, ax, ay, az, gx, g
 
 
 @rows
-def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, txx, txy, txz, tyz, tzz, scale, weight, own, whole,
-             close2, push, drag, hit, dt, ax, ay, az, c, nx, ny, nz, bx, by, bz):
+def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, isotropy, scale, weight, own, whole, close2, push,
+             drag, hit, dt, ax, ay, az, c, nx, ny, nz, bx, by, bz):
     """Pair accelerations, concentration, inward normal and viscous sums of fluid particles.
 
     Pressure gradient of Mellado 2021, eq. 5.15, with constant volumes, push = d / (n0 rho0), and (1 + t) p of each
-    of a pair for its p, `t` as `isotropic` has it: momentum is kept to the last bit; viscosity in the
+    of a pair for its p, t from the tuple `isotropy` (`isotropic`): momentum is kept to the last bit; viscosity in the
     angular-momentum conserving form, drag = 2 d (d + 2) nu / n0, fluid-fluid only, whose sums b are what the noise
     damping works on (`continuity`); off walls and bodies, the collision of eqs 5.38-5.39 with the sign corrected, as
     the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2), at the boundary's
     velocity after dt. Water does not collide with water: shifting keeps it apart, collisions brake all that strains.
     """
+    txx, txy, txz, tyz, tzz = isotropy
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, pi = x[i], y[i], z[i], u[i], v[i], w[i], p[i]
@@ -144,14 +145,15 @@ def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, txx, txy, txz, 
 
 
 @rows
-def reaction(at, start, middle, index, x, y, z, u, v, w, ax, ay, az, p, txx, txy, txz, tyz, tzz, scale, weight, density,
-             close2, push, hit, dt, out, lever, response):
+def reaction(at, start, middle, index, x, y, z, u, v, w, ax, ay, az, p, isotropy, scale, weight, density, close2, push,
+             hit, dt, out, lever, response):
     """Pair accelerations that body samples give back to the water they see, times -1: rows of out (samples, 3).
 
     They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `out` by
     -`response` da, a symmetric matrix that is never negative, by its elements xx, xy, xz, yy, yz, zz (samples, 6).
     Which pairs collide is told by the velocities at the start of the step.
     """
+    txx, txy, txz, tyz, tzz = isotropy
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, pi, share = x[i], y[i], z[i], u[i], v[i], w[i], p[i], scale[i]
@@ -213,7 +215,7 @@ def isotropic(xx, xy, xz, yy, yz, zz, dimensions):
 
 @rows
 def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, scale, weight, n0, flow, spread, hx, hy,
-               hz, crowd, close, dimensions, rate, ax, ay, az, ex, ey, ez, txx, txy, txz, tyz, tzz):
+               hz, crowd, close, dimensions, rate, ax, ay, az, ex, ey, ez, isotropy):
     """Relative rate of n (Mellado 2021, eq. 5.16) with diffusion; the sums of shifting and of noise damping.
 
     The sums of e e W are for the pressure force, see `isotropic`. The divergence is not made isotropic too: n would no
@@ -226,6 +228,7 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
     ex, ey, ez receive the viscous sums of the viscous sums b: twice applied, the viscosity damps what changes from
     particle to particle and leaves what changes over many.
     """
+    txx, txy, txz, tyz, tzz = isotropy
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, ni = x[i], y[i], z[i], u[i], v[i], w[i], n[i]
@@ -272,66 +275,3 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
         txx[i], txy[i], txz[i], tyz[i], tzz[i] = isotropic(mxx, mxy, mxz, myy, myz, mzz, dimensions)
         ax[i], ay[i], az[i] = sx, sy, sz
         ex[i], ey[i], ez[i] = lx, ly, lz
-
-
-@each
-def kick(at, gx, gy, gz, keep, dt, ax, ay, az, u, v, w):
-    """Velocity of the particles `at` by their pair acceleration and gravity, times `keep` (1 but when settling)."""
-    for row in prange(at.size):
-        i = at[row]
-        u[i] = (u[i] + dt * (ax[i] + gx)) * keep
-        v[i] = (v[i] + dt * (ay[i] + gy)) * keep
-        w[i] = (w[i] + dt * (az[i] + gz)) * keep
-
-
-@each
-def drift(kind, u, v, w, dt, x, y, z):
-    """Positions of all fluid particles over dt at their velocity."""
-    for i in prange(x.size):
-        if kind[i] == FLUID:
-            x[i] += dt * u[i]
-            y[i] += dt * v[i]
-            z[i] += dt * w[i]
-
-
-@each
-def grow(at, rate, dt, n):
-    """Number density of the particles `at` over dt at their relative rate."""
-    for row in prange(at.size):
-        i = at[row]
-        n[i] += dt * n[i] * rate[i]
-
-
-@each
-def damp(at, share, ex, ey, ez, u, v, w):
-    """Velocity of the particles `at` less `share` of their twofold viscous sums."""
-    for row in prange(at.size):
-        i = at[row]
-        u[i] -= share * ex[i]
-        v[i] -= share * ey[i]
-        w[i] -= share * ez[i]
-
-
-@each
-def displace(at, ax, ay, az, x, y, z):
-    """Add the shifts of the particles `at`."""
-    for row in prange(at.size):
-        i = at[row]
-        x[i] += ax[i]
-        y[i] += ay[i]
-        z[i] += az[i]
-
-
-@kernel
-def extremes(at, u, v, w, x, y, z, start):
-    """Largest speed and largest distance from `start` (3, n), both squared; infinite when a speed is not finite."""
-    fastest, farthest = 0.0, 0.0
-    for row in range(at.size):
-        i = at[row]
-        speed = u[i] * u[i] + v[i] * v[i] + w[i] * w[i]
-        if not speed < np.inf:
-            return np.inf, farthest
-        dx, dy, dz = x[i] - start[0, row], y[i] - start[1, row], z[i] - start[2, row]
-        fastest = max(fastest, speed)
-        farthest = max(farthest, dx * dx + dy * dy + dz * dz)
-    return fastest, farthest

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from parsim.fluid import kernels, surface
+from parsim.fluid import kernels, surface, updates
 from parsim.fluid.reference import Lattice
 from parsim.state import ISOTROPY, SURFACE
 from parsim.timers import Timers
@@ -94,9 +94,9 @@ class WCMPS:
         lattice = self.lattice
         with self.timers("momentum"):
             kernels.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                             p.txx, p.txy, p.txz, p.tyz, p.tzz, p.scale, lattice.weight, lattice.own, self._whole,
-                             self.close2, self._push, self.viscosity * self._viscous, self._hit(dt), dt, p.ax, p.ay,
-                             p.az, p.c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
+                             p.isotropy, p.scale, lattice.weight, lattice.own, self._whole, self.close2, self._push,
+                             self.viscosity * self._viscous, self._hit(dt), dt, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz,
+                             p.bx, p.by, p.bz)
 
     def react(self, domain, near, dt):
         """Forces of the water on the body samples `near.body`, N: (samples, 3), and how they depend on accelerations.
@@ -106,19 +106,19 @@ class WCMPS:
         p, count = domain.particles, near.body.size
         out, lever, response = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6))
         kernels.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az,
-                         p.p, p.txx, p.txy, p.txz, p.tyz, p.tzz, p.scale, self.lattice.weight, self.density,
-                         self.close2, self._push, self._hit(dt), dt, out, lever, response)
+                         p.p, p.isotropy, p.scale, self.lattice.weight, self.density, self.close2, self._push,
+                         self._hit(dt), dt, out, lever, response)
         out *= self.mass
         response *= self.mass
         return out, lever, response
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
-        return [math.sqrt(e) for e in kernels.extremes(near.fluid, p.u, p.v, p.w, p.x, p.y, p.z, start)]
+        return [math.sqrt(e) for e in updates.extremes(near.fluid, p.u, p.v, p.w, p.x, p.y, p.z, start)]
 
     def kick(self, p, near, dt, keep):
         """Velocities to the full step; `keep` is the share of velocity kept (1 but when settling)."""
-        kernels.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
+        updates.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
 
     def finish(self, domain, near, dt, speed):
         """Positions to the full step, continuity there, damping, shifting; `STATE` is left to be refreshed."""
@@ -130,16 +130,16 @@ class WCMPS:
             self._drift(p, halo, dt)
         self._continuity(p, near, near.border, speed)
         with self.timers("move"):
-            kernels.grow(near.fluid, p.rate, 0.5 * dt, p.n)
+            updates.grow(near.fluid, p.rate, 0.5 * dt, p.n)
             share = self.noise_damping * self.sound * self.lattice.spacing**3 * self._viscous**2 * dt
-            kernels.damp(near.fluid, share, p.ex, p.ey, p.ez, p.u, p.v, p.w)
+            updates.damp(near.fluid, share, p.ex, p.ey, p.ez, p.u, p.v, p.w)
         if self.shifting:
             with self.timers("shifting"):
                 self._shift(domain, near, dt, speed)
 
     def _drift(self, p, at, dt):
         with self.timers("move"):
-            kernels.drift(p.kind[at], p.u[at], p.v[at], p.w[at], 0.5 * dt, p.x[at], p.y[at], p.z[at])
+            updates.drift(p.kind[at], p.u[at], p.v[at], p.w[at], 0.5 * dt, p.x[at], p.y[at], p.z[at])
 
     def _continuity(self, p, near, at, speed):
         lattice = self.lattice
@@ -148,8 +148,7 @@ class WCMPS:
             kernels.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                                p.bx, p.by, p.bz, p.scale, lattice.weight, lattice.number, self._gradient, spread,
                                *(self._down * self._slope), _CROWD / lattice.spacing, _CLOSE * lattice.spacing,
-                               float(lattice.dimensions), p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez,
-                               p.txx, p.txy, p.txz, p.tyz, p.tzz)
+                               float(lattice.dimensions), p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez, p.isotropy)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
@@ -160,7 +159,7 @@ class WCMPS:
                       (_BESIDE * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,
                       lattice.own, self._whole, lattice.cut, *self._down, self._slope, self.recovery * dt,
                       self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
-        kernels.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
+        updates.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
 
     @property
     def _gradient(self):
