@@ -73,8 +73,8 @@ def test_momentum_sweep(mixed, weight):
     p.ax[near.boundary] = 3.0
     c, b = np.zeros(len(p)), np.zeros((3, len(p)))
     kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                     p.isotropy, p.scale, WEIGHTS[weight].of_radius(RE), own, whole, close**2, push, drag, hit, dt, p.ax,
-                     p.ay, p.az, c, p.nx, p.ny, p.nz, *b)
+                     p.isotropy, p.scale, WEIGHTS[weight].of_radius(RE), own, whole, close**2, push, drag, hit, dt,
+                     p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, *b)
     struck, t = 0, corrections(p)
     for i in near.fluid[::7]:
         a, normal, viscous, total = np.zeros(3), np.zeros(3), np.zeros(3), own
@@ -195,8 +195,8 @@ def sweep(p, near, scheme):
     """Pair accelerations of all particles and their viscous sums with the constants of a lattice; concentrations."""
     c = np.zeros(len(p))
     kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                     p.isotropy, p.scale, scheme.weight, scheme.own, scheme.whole, 0.0, scheme.dimensions / scheme.number,
-                     1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
+                     p.isotropy, p.scale, scheme.weight, scheme.own, scheme.whole, 0.0,
+                     scheme.dimensions / scheme.number, 1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
     return c
 
 
