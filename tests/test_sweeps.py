@@ -196,7 +196,8 @@ def sweep(p, near, scheme):
     c = np.zeros(len(p))
     kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
                      p.isotropy, p.scale, scheme.weight, scheme.own, scheme.whole, 0.0,
-                     scheme.dimensions / scheme.number, 1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, p.bx, p.by, p.bz)
+                     scheme.dimensions / scheme.number, 1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz,
+                     p.bx, p.by, p.bz)
     return c
 
 
