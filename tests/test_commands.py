@@ -163,7 +163,7 @@ def test_check_tells_what_the_disk_will_hold(tmp_path):
     case = load(write(tmp_path)["2d"], ["output.frames=0.1", "output.series=0.01", "output.milestones=0.5"])
     frames, rows, checkpoints = estimate.disk(case)
     assert frames == 12 * (90 * 1950 + 2000) and rows == pytest.approx(100 * 1500) and checkpoints % 1950 == 0
-    assert "disk       3.0 MB: 2.1 MB of frames, 150.0 kB of series, " in "\n".join(estimate.lines(case, 1))
+    assert "disk       3.4 MB: 2.1 MB of frames, 150.0 kB of series, " in "\n".join(estimate.lines(case, 1))
 
 
 def test_estimate_of_a_small_tank_by_hand(tmp_path):

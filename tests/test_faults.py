@@ -275,7 +275,7 @@ def test_a_disk_that_is_nearly_full_stops_the_run_in_good_order(small_disk, star
     rare = ["--set", "output.frames=1.0", "--set", "output.checkpoints=15.0"]
     job = started(["run", CASE, "-o", out, "--set", "run.until=0.3", *rare], 1)
     job.until(lambda: time_of(out) > 0.01)
-    fill(small_disk, 250_000)
+    fill(small_disk, 330_000)
     assert job.end() == 74, job.said()
     assert "stopped with a checkpoint" in job.said()
 
