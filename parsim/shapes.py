@@ -100,7 +100,8 @@ def beside_bodies(points, case, bodies):
 def taken_by_bodies(lattices, case, bodies):
     """Numbers (n,) of the points that are not water, since bodies and the gaps beside them take them.
 
-    Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together.
+    Numbers count the points of all `lattices`, one of each fill. As many as the volume of the solids holds, for all
+    fills together; or more, where points lie deeper in them than a quarter of a spacing.
     """
     number, place, spacing, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
     for points in lattices:
@@ -114,15 +115,17 @@ def taken_by_bodies(lattices, case, bodies):
         return number
     nearest, taken = solids(place, case, bodies)
     near = np.flatnonzero(nearest < case.spacing)
-    volume = 0.0
+    share = np.zeros(near.size)
     fine = (np.arange(_FINE) + 0.5) / _FINE - 0.5
     steps = [fine if a in case.axes else np.zeros(1) for a in range(3)]
     for offset in np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3):
-        inside = solids(place[near] + offset * spacing[near], case, bodies)[1]
-        volume += inside.mean() * near.size if near.size else 0.0
-    count = round(volume / _FINE ** len(case.axes))
-    depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near]
-    depth = np.round(depth / case.spacing, 6)  # points of one lattice plane are equally deep
+        share += solids(place[near] + offset * spacing[near], case, bodies)[1]
+    share /= _FINE ** len(case.axes)
+    depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near] / case.spacing
+    # water left just under a flat face comes out of it by itself; deeper, at an edge or in a gap it would be flung out
+    depth -= np.where(depth < 0.0, np.abs(share - 0.5 + depth), 0.0)
+    depth = np.round(depth, 6)  # points of one lattice plane are equally deep
+    count = max(round(share.sum()), np.count_nonzero(depth < -0.25))
     return number[near[np.lexsort((scatter(number[near]), depth))[:count]]]
 
 

@@ -78,3 +78,21 @@ def test_accelerations_against_a_plain_solution():
         assert change[0] == pytest.approx(after - before, rel=1e-10, abs=1e-10)
         assert left[0] == pytest.approx(load[0] - water @ (after - before), rel=1e-10, abs=1e-10)
     assert rigid @ exact == pytest.approx(load[0] - water @ (exact - before) + given, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("height", [0.2, 0.25])
+@pytest.mark.parametrize("second", [1.5, 1.8])
+@pytest.mark.parametrize("weight", ["mps", "wendland_c4"])
+def test_no_water_is_left_in_an_edge_of_a_body_or_flung_out_of_it(height, second, weight):
+    blocks = [{"name": name, "shape": {"size": [0.015, 1.0, 0.015]}, "density": 2000.0, "material": "wood",
+               "position": [0.01 * x, 0.5, 0.01 * (height + 0.75)], "fixed": True}
+              for name, x in (("a", 2.0), ("b", 2.0 + second))]  # fmt: skip
+    simulation = Simulation(parse({
+        "dimensions": 2, "spacing": 0.01, "box": {"max": [0.4, 1.0, 0.2]}, "bodies": blocks, "run": {"until": 1.0},
+        "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.02]}], "speed": 1.5, "weight": weight},
+        "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
+    }), Comm())  # fmt: skip
+    for _ in range(10):
+        simulation.step()
+    water = simulation.snapshot().water
+    assert np.hypot(water.u, water.w).max() < 0.5, (simulation.step_count, np.hypot(water.u, water.w).max())
