@@ -100,8 +100,7 @@ def beside_bodies(points, case, bodies):
 def taken_by_bodies(lattices, case, bodies):
     """Numbers (n,) of the points that are not water, since bodies and the gaps beside them take them.
 
-    Numbers count the points of all `lattices`, one of each fill. As many as the volume of the solids holds, for all
-    fills together; or more, where points lie deeper in them than a quarter of a spacing.
+    Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together.
     """
     number, place, spacing, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
     for points in lattices:
@@ -122,11 +121,10 @@ def taken_by_bodies(lattices, case, bodies):
         share += solids(place[near] + offset * spacing[near], case, bodies)[1]
     share /= _FINE ** len(case.axes)
     depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near] / case.spacing
-    # water left just under a flat face comes out of it by itself; deeper, at an edge or in a gap it would be flung out
+    # water left under one flat face comes out of it by itself, at an edge or in a gap it is flung out: that goes first
     depth -= np.where(depth < 0.0, np.abs(share - 0.5 + depth), 0.0)
     depth = np.round(depth, 6)  # points of one lattice plane are equally deep
-    count = max(round(share.sum()), np.count_nonzero(depth < -0.25))
-    return number[near[np.lexsort((scatter(number[near]), depth))[:count]]]
+    return number[near[np.lexsort((scatter(number[near]), depth))[: round(share.sum())]]]
 
 
 def kept_out(points, number, place, case, bodies):
