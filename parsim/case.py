@@ -98,7 +98,7 @@ class Water(Table):
     support: Real = Field(3.1, ge=2.1, le=4, description="radius of the support over the spacing")
     diffusion: Share = Field(0.5, description="diffusion of density, delta")
     noise_damping: Annotated[Real, Field(ge=0, le=0.005)] = Field(
-        0.0001, description="damping of what changes from particle to particle: a biharmonic viscosity over c0 l0^3"
+        0.00015, description="damping of what changes from particle to particle: a biharmonic viscosity over c0 l0^3"
     )
     restitution: Share = Field(0.5, description="restitution of water that comes too close to walls and bodies")
     collision_distance: Share = Field(0.9, description="distance of water that comes too close, over the spacing")

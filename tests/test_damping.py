@@ -34,7 +34,7 @@ def twofold(domain, near, scheme, velocity):
     domain.refresh("bx", "by", "bz")
     kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                       3.0, *nothing, p.ex, p.ey, p.ez, tuple(np.zeros((5, len(p)))))
+                       3.0, p.body, *nothing, p.ex, p.ey, p.ez, tuple(np.zeros((5, len(p)))))
     return [np.stack(fields, 1)[near.fluid] for fields in ((p.bx, p.by, p.bz), (p.ex, p.ey, p.ez))]
 
 

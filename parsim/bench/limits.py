@@ -57,7 +57,7 @@ def sweeps(simulation, calls):
     def continuity(index):
         kernels.continuity(*lists, index, *place, *flow, p.n, p.bx, p.by, p.bz, p.scale, lattice.weight,
                            lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing,
-                           float(lattice.dimensions), *out[:7], tuple(np.zeros((5, len(p)))))
+                           float(lattice.dimensions), p.body, *out[:7], tuple(np.zeros((5, len(p)))))
 
     works = {
         "momentum": lambda: momentum(near.index),

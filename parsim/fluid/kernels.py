@@ -14,7 +14,8 @@ from parsim.fluid.weights.choice import weight_at
 from parsim.jit import each, kernel, prange, rows
 from parsim.state import DETACHED, FLUID
 
-LEAST_ISOTROPIC = 0.1  # what is less so, drops and edges, is made isotropic by that much only
+LARGEST = 0.1  # correction of `isotropic`: what is less so is made isotropic by that much only
+_PART, _FULL = 0.97, 0.99  # share of n0 that water and bodies fill from which a particle is made isotropic, and fully
 
 
 @each
@@ -195,27 +196,28 @@ def reaction(at, start, middle, index, x, y, z, u, v, w, ax, ay, az, p, isotropy
 
 
 @kernel
-def isotropic(xx, xy, xz, yy, yz, zz, dimensions):
-    """What times which a symmetric matrix is isotropic, less one: xx, xy, xz, yz, zz. First order; no trace.
+def isotropic(xx, xy, xz, yy, yz, zz, dimensions, share):
+    """`share` of what times which a symmetric matrix is isotropic, less one: xx, xy, xz, yz, zz. First order; no trace.
 
     With the sums of e e W of a particle, water under even pressure has no shear stress, however its particles lie.
     Without, it resists like a solid, by about 0.01 of its pressure: a shear wave under 0.05 rho c0^2 decayed a quarter
     too fast along the diagonal of its lattice, a block rose through 0.7 m of water at 0.73 of its speed, waves were 1
-    to 2 % too fast. At a flat surface the sums are isotropic by themselves.
+    to 2 % too fast. Such a force has no energy of which it is the slope. Deep inside, that does no harm; near a surface
+    or a wall it shakes resting water without end, by 12 mm/s in 0.2 m of it, so there its `share` is none.
     """
-    mean = (xx + yy + zz) / dimensions
-    if mean <= 0.0:
+    if share <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
+    mean = (xx + yy + zz) / dimensions
     xx, xy, xz, yz, zz = 1.0 - xx / mean, -xy / mean, -xz / mean, -yz / mean, 1.0 - zz / mean
     yy = xx + zz
     size = math.sqrt(xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz))
-    f = min(1.0, LEAST_ISOTROPIC / size) if size > 0.0 else 0.0
+    f = min(share, 1.0, LARGEST / size) if size > 0.0 else 0.0
     return f * xx, f * xy, f * xz, f * yz, f * zz
 
 
 @rows
 def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, scale, weight, n0, flow, spread, hx, hy,
-               hz, crowd, close, dimensions, rate, ax, ay, az, ex, ey, ez, isotropy):
+               hz, crowd, close, dimensions, body, rate, ax, ay, az, ex, ey, ez, isotropy):
     """Relative rate of n (Mellado 2021, eq. 5.16) with diffusion; the sums of shifting and of noise damping.
 
     The sums of e e W are for the pressure force, see `isotropic`. The divergence is not made isotropic too: n would no
@@ -233,7 +235,7 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
         i = at[row]
         xi, yi, zi, ui, vi, wi, ni = x[i], y[i], z[i], u[i], v[i], w[i], n[i]
         bxi, byi, bzi = bx[i], by[i], bz[i]
-        divergence, diffusion = 0.0, 0.0
+        divergence, diffusion, filled = 0.0, 0.0, 0.0
         mxx, mxy, mxz, myy, myz, mzz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         sx, sy, sz = 0.0, 0.0, 0.0
         lx, ly, lz = 0.0, 0.0, 0.0
@@ -243,6 +245,7 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
             wt, g, _ = weight_at(weight, r2, inverse)
+            filled += wt
             gx, gy, gz = g * dx, g * dy, g * dz
             divergence += gx * (u[j] - ui) + gy * (v[j] - vi) + gz * (w[j] - wi)
             mxx, mxy, mxz = mxx + gx * dx, mxy + gx * dy, mxz + gx * dz
@@ -261,7 +264,8 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
-            _, g, _ = weight_at(weight, r2, inverse)
+            wt, g, _ = weight_at(weight, r2, inverse)
+            filled += wt * scale[j] if body[j] >= 0 else 0.0
             g *= scale[j]
             gx, gy, gz = g * dx, g * dy, g * dz
             divergence += gx * (u[j] - ui) + gy * (v[j] - vi) + gz * (w[j] - wi)
@@ -272,6 +276,7 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
             sy += f * gy
             sz += f * gz
         rate[i] = spread * diffusion - flow * divergence
-        txx[i], txy[i], txz[i], tyz[i], tzz[i] = isotropic(mxx, mxy, mxz, myy, myz, mzz, dimensions)
+        txx[i], txy[i], txz[i], tyz[i], tzz[i] = isotropic(mxx, mxy, mxz, myy, myz, mzz, dimensions,
+                                                                 (filled / n0 - _PART) / (_FULL - _PART))
         ax[i], ay[i], az[i] = sx, sy, sz
         ex[i], ey[i], ez[i] = lx, ly, lz

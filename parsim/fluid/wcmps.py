@@ -148,7 +148,8 @@ class WCMPS:
             kernels.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                                p.bx, p.by, p.bz, p.scale, lattice.weight, lattice.number, self._gradient, spread,
                                *(self._down * self._slope), _CROWD / lattice.spacing, _CLOSE * lattice.spacing,
-                               float(lattice.dimensions), p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez, p.isotropy)
+                               float(lattice.dimensions), p.body, p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez,
+                               p.isotropy)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
