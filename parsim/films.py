@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from parsim.boundary.wall import ends_of_walls
+from parsim.boundary.wall import ends_of_walls, walled_sides
 from parsim.fluid.weights.choice import weight_at
 from parsim.jit import kernel
 from parsim.solid.rotation import matrices, to_body, to_global
@@ -113,11 +113,8 @@ def _layers(lattice):
 
 def _planes(case):
     """The walls of the box: rows (axis, side, level, lowest and highest corner), side -1 for the low ones."""
-    sides = ((a, sign) for a in case.axes for sign in (-1, 1))
     ends = np.concatenate(ends_of_walls(case))
-    rows = [(a, sign, (case.box.min if sign < 0 else case.box.max)[a], *ends) for a, sign in sides
-            if getattr(case.box.faces, f"{'xyz'[a]}_{'min' if sign < 0 else 'max'}") == "wall"]
-    return np.array(rows, float).reshape(-1, 9)
+    return np.array([(*side, *ends) for side in walled_sides(case)], float).reshape(-1, 9)
 
 
 @kernel

@@ -44,7 +44,7 @@ def collapsed(simulation, dt):
 
 def outside(simulation, rows):
     """The error for what has left the box: rows of step, time, what, id, place, velocity."""
-    told = [_moving("particle " + str(int(row[3])) if row[2] == "water" else row[2], row[4:]) for row in rows]
+    told = [_particle(row[3:]) if row[2] == "water" else _moving(row[2], row[4:]) for row in rows]
     more = f"; and {len(told) - _SHOWN} more" if len(told) > _SHOWN else ""
     return RunError(f"{_when(simulation)}: has left the box: {'; '.join(told[:_SHOWN])}{more}. "
                     'With run.outside = "remove" it is counted and taken out')

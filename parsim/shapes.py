@@ -7,6 +7,7 @@ the bodies first, whole rows thinned evenly. Only what lies beside bodies is loo
 
 import numpy as np
 
+from parsim.boundary.wall import walled_sides
 from parsim.solid.rotation import matrices
 
 _FINE = 4  # measuring points per spacing and axis
@@ -51,12 +52,8 @@ def outside_box(points, centre, turn, half, axes):
 
 def plane_distances(points, case):
     """Distance (n,) and direction into the water (3,) of each wall and gate face that stands beside the points."""
-    for axis, name in enumerate("xyz"):
-        if axis not in case.axes:
-            continue
-        for side, place, sign in (("min", case.box.min[axis], 1.0), ("max", case.box.max[axis], -1.0)):
-            if getattr(case.box.faces, f"{name}_{side}") == "wall":
-                yield sign * (points[:, axis] - place), sign * np.eye(3)[axis]
+    for axis, sign, level in walled_sides(case):
+        yield sign * (level - points[:, axis]), -sign * np.eye(3)[axis]
     if case.gate is not None:
         for place, sign in ((case.gate.min_x, -1.0), (case.gate.max_x, 1.0)):
             distance = sign * (points[:, 0] - place)

@@ -185,11 +185,9 @@ class Simulation:
 
     def _take_out(self):
         """Take out the bodies that are wholly outside the grid, as the domain does with water: rows of `gone`."""
-        grid, axes = self.domain.grid, list(self.case.axes)
-        low, high = np.full(3, -np.inf), np.full(3, np.inf)
-        low[axes], high[axes] = grid.low[axes], grid.high[axes]
-        around = list(grid.periodic)
-        low[around], high[around] = -np.inf, np.inf
+        grid = self.domain.grid
+        endless = np.array(grid.periodic) | ~np.isin(range(3), self.case.axes)
+        low, high = np.where(endless, -np.inf, grid.low), np.where(endless, np.inf, grid.high)
         at, rows = self.bodies.take_out(low, high, self.time)
         return [(self.step_count + 1, self.time, f"body {self.bodies.names[b]}", b, *row)
                 for b, row in zip(at, rows, strict=True)]

@@ -26,6 +26,14 @@ def samples_of(kind, x, y, z):
     return Particles(count, id=make_id(kind, np.arange(count)), kind=kind, x=flat[0], y=flat[1], z=flat[2])
 
 
+def walled_sides(case):
+    """Axis, side (-1 low, 1 high) and level, m, of each side of the box that is a wall."""
+    for axis in case.axes:
+        for sign, name, level in zip((-1, 1), _SIDES[axis], (case.box.min[axis], case.box.max[axis]), strict=True):
+            if getattr(case.box.faces, name) == "wall":
+                yield axis, sign, level
+
+
 def ends_of_walls(case):
     """Lowest and highest corner (3,), m, of where there are walls: they end at the open sides, and only there."""
     faces = case.box.faces

@@ -3,7 +3,7 @@
 import numpy as np
 
 from parsim import diagnostics
-from parsim.boundary.wall import ends_of_walls
+from parsim.boundary.wall import ends_of_walls, walled_sides
 from parsim.case_bodies import GAUGE_REACH
 from parsim.solid.rotation import matrices
 
@@ -13,12 +13,9 @@ class Measure:
 
     def __init__(self, case, simulation):
         self.case = case
-        self.ends, self.walls = np.array(ends_of_walls(case)), np.full((2, 3), np.inf)
-        self.walls[0] = -np.inf
-        for axis in case.axes:
-            for row, side, end in ((0, "min", case.box.min), (1, "max", case.box.max)):
-                if getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall":
-                    self.walls[row, axis] = end[axis]
+        self.ends, self.walls = np.array(ends_of_walls(case)), np.repeat([[-np.inf], [np.inf]], 3, axis=1)
+        for axis, sign, level in walled_sides(case):
+            self.walls[int(sign > 0), axis] = level
         middle = 0.5 * (case.box.min[1] + case.box.max[1])
         self.gauges = np.array([[g.x, middle if g.y is None else g.y] for g in case.output.gauges]).reshape(-1, 2)
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from parsim.boundary.gate import Gate
-from parsim.boundary.wall import ends_of_walls
+from parsim.boundary.wall import ends_of_walls, walled_sides
 from parsim.solid import table
 from parsim.solid.elements import elements_of
 from parsim.solid.hertz import pair_tables
@@ -157,13 +157,10 @@ def _depth(case, bodies):
 
 def _walls(case):
     """Planes of the faces of the box that are walls, (n, 10): normal inwards, level, lowest and highest corner, m."""
-    axes = (0, 2) if case.dimensions == 2 else (0, 1, 2)
-    planes = [(axis, sign, end[axis]) for axis in axes
-              for sign, side, end in ((1.0, "min", case.box.min), (-1.0, "max", case.box.max))
-              if getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall"]
+    planes = list(walled_sides(case))
     walls = np.zeros((len(planes), 10))
-    for row, (axis, sign, at) in enumerate(planes):
-        walls[row, axis], walls[row, 3] = sign, sign * at
+    for row, (axis, side, level) in enumerate(planes):
+        walls[row, axis], walls[row, 3] = -side, -side * level
         walls[row, 4:7], walls[row, 7:] = ends_of_walls(case)
     return walls
 
