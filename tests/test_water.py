@@ -205,6 +205,20 @@ def test_the_waters_beside_a_closed_gate_never_meet():
     assert p.p[low].mean() == pytest.approx(9810 * 0.045, rel=0.05), "the shallow side feels nothing of the deep one"
 
 
+@pytest.mark.parametrize("high", [0.12, 0.1225, 0.125, 0.1275])
+def test_no_water_leaves_beside_a_gate_off_the_lattice(high):
+    """A plate thinner than the spacing: each side's floor and sides go on behind it without a hole."""
+    fill = [{"min": [0.0, 0.0, 0.0], "max": [high - 0.005, 0.06, 0.1]},
+            {"min": [high, 0.0, 0.0], "max": [0.24, 0.06, 0.04]}]
+    s = simulation(TANK | {"dimensions": 3, "box": {"max": [0.24, 0.06, 0.2]}, "water": {"fill": fill},
+                           "gate": {"min_x": high - 0.005, "max_x": high, "speed": 1.0, "opens": 10.0}})
+    while s.time < 0.15:
+        s.step()
+    p, at = s.domain.particles, s.near.fluid
+    assert p.z[at].min() > 0.0025 and p.y[at].min() > 0.0025 and p.y[at].max() < 0.0575
+    assert np.hypot(p.u[at], np.hypot(p.v[at], p.w[at])).max() < 0.1
+
+
 def test_water_passes_under_a_gate_that_has_risen_and_not_through_it():
     s = gated(opens=0.0)
     while s.time < 0.1:

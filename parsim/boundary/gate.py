@@ -44,21 +44,30 @@ class Gate:
 
 
 class GateSamples:
-    """The samples that each side of the gate shows to the water, a lattice that hangs on the plate."""
+    """The samples that each side of the gate shows to the water, a lattice that hangs on the plate.
+
+    Where floor and sides of the tank go on behind the plate they are on the lattice of the walls, from the first one
+    that the plate hides: else there is a hole of up to half a spacing in the floor, through which water leaves.
+    """
 
     def __init__(self, case, gate, layers):
         self.gate, self._case, self._layers = gate, case, layers
+        x, _ = lattice_axis(case, 0, layers)
+        self._behind_up, self._behind_down = x[x >= gate.min_x][:layers], x[x <= gate.max_x][::-1][:layers]
 
     def samples(self, slab, time):
         """Samples of the slab at `time`, s: Particles with the row above the edge as `sample`."""
         case, l0 = self._case, self._case.spacing
         begin = -self._layers if self.gate.closed(time) else 0
         rows = np.arange(begin, math.ceil((case.box.max[2] - self.gate.bottom(time)) / l0))
-        across, _ = lattice_axis(case, 1, self._layers)
+        across, side = lattice_axis(case, 1, self._layers)
         depth = (np.arange(self._layers) + 0.5) * l0
+        in_walls = np.tile((side != 0)[:, None] | (rows < 0), (self._layers, 1, 1)).ravel()
         parts = []
-        for kind, x in ((GATE_UP, self.gate.min_x + depth), (GATE_DOWN, self.gate.max_x - depth)):
+        for kind, x, behind in ((GATE_UP, self.gate.min_x + depth, self._behind_up),
+                                (GATE_DOWN, self.gate.max_x - depth, self._behind_down)):
             part = samples_of(kind, x, across, self.gate.bottom(time) + (rows + 0.5) * l0)
+            part.x[in_walls] = np.repeat(behind, across.size * rows.size)[in_walls]
             part.sample = np.tile(rows, x.size * across.size).astype(np.int32)
             part.w[:] = self.gate.velocity(time)
             parts.append(part)
