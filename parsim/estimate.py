@@ -19,7 +19,7 @@ _ROW_BYTES, _BODY_ROW_BYTES = 600, 900  # of all series, and of each body in the
 
 @dataclass(frozen=True)
 class Estimate:
-    """Particles by kind, the active ones, bytes of these with their neighbour lists, steps of the run."""
+    """Particles by kind, the active ones, bytes of these with their lists, steps of the run and the time of one, s."""
 
     water: int
     wall: int
@@ -28,6 +28,7 @@ class Estimate:
     active: int
     bytes: float
     steps: int
+    time_step: float
 
 
 def estimate(case):
@@ -37,6 +38,7 @@ def estimate(case):
     water, gate = round(_water(case)), _gate(case, layers)
     body = sum(_samples(case, body, layers) for body in case.bodies)
     active = water + body + round(gate * wet) + _walls(case, layers, wet)
+    dt = time_step(case)
     return Estimate(
         water=water,
         wall=_walls(case, layers),
@@ -44,7 +46,8 @@ def estimate(case):
         gate=gate,
         active=active,
         bytes=active * (FIELD_BYTES + 4 * LIST_ROOM * _neighbours(case)),
-        steps=math.ceil((case.run.until - case.start) / time_step(case)),
+        steps=math.ceil((case.run.until - case.start) / dt),
+        time_step=dt,
     )
 
 
@@ -55,9 +58,9 @@ def time_step(case):
     return WCMPS(case).time_step(case.speed)
 
 
-def disk(case):
-    """Bytes on the disk that the frames, the series and the checkpoints of a case will take, about."""
-    water, bodies, time = estimate(case).water, len(case.bodies), case.run.until - case.start
+def disk(case, water):
+    """Bytes on the disk that frames, series and checkpoints of a case of so many water particles will take, about."""
+    bodies, time = len(case.bodies), case.run.until - case.start
     frames = math.ceil(time / case.output.frames + 2.0) * (_FRAME_BYTES * water + _BODY_BYTES * bodies)
     series = time / case.output.series * (_ROW_BYTES + _BODY_ROW_BYTES * bodies)
     milestones = math.ceil(time / case.output.milestones) if case.output.milestones else 0
@@ -66,12 +69,13 @@ def disk(case):
 
 def lines(case, ranks):
     """The estimate in words, for `ranks` ranks of one core each."""
-    cost, parts = estimate(case), disk(case)
+    cost = estimate(case)
+    parts = disk(case, cost.water)
     each, all_of_them = (f"on each of {ranks} ranks", f"on {ranks} ranks") if ranks > 1 else ("on one rank",) * 2
     return [
         f"particles  about {cost.water:,} water, {cost.wall:,} wall, {cost.body:,} body, {cost.gate:,} gate; "
         f"{cost.active:,} active",
-        f"steps      {cost.steps:,} of {time_step(case):.3g} s, from {case.start:g} to {case.run.until:g} s",
+        f"steps      {cost.steps:,} of {cost.time_step:.3g} s, from {case.start:g} to {case.run.until:g} s",
         f"memory     {_memory(cost, ranks)} {each}",
         f"time       {_duration(cost, ranks)} {all_of_them}, if a core makes {RATE:,} active particle-steps per second",
         "disk       {}: {} of frames, {} of series, {} of checkpoints".format(*map(_size, (sum(parts), *parts))),
@@ -82,7 +86,7 @@ def brief(case, ranks):
     """The estimate for one of `ranks` ranks, on one line."""
     cost = estimate(case)
     return (f"{cost.active:,} active particles, {cost.steps:,} steps, {_memory(cost, ranks)}, "
-            f"{_duration(cost, ranks)}, {_size(sum(disk(case)))} on the disk")
+            f"{_duration(cost, ranks)}, {_size(sum(disk(case, cost.water)))} on the disk")
 
 
 def _memory(cost, ranks):

@@ -153,7 +153,8 @@ def test_estimate_counts_what_is_built(name):
 @pytest.mark.parametrize(("count", "said"), [
     (1e3, "1 second "), (2.1e7, "42 seconds "), (1e9, "33 minutes "), (1e10, "5.6 hours ")])
 def test_check_tells_time_in_a_unit_that_shows_it(monkeypatch, tmp_path, count, said):
-    cost = estimate.Estimate(water=10**6, wall=0, body=0, gate=0, active=1000, bytes=0.0, steps=int(count / 1000))
+    cost = estimate.Estimate(water=10**6, wall=0, body=0, gate=0, active=1000, bytes=0.0, steps=int(count / 1000),
+                             time_step=1.0)
     monkeypatch.setattr(estimate, "estimate", lambda case: cost)
     time = estimate.lines(load(write(tmp_path)["2d"]), 1)[3]
     assert time.startswith(f"time       {said}")
@@ -161,7 +162,7 @@ def test_check_tells_time_in_a_unit_that_shows_it(monkeypatch, tmp_path, count, 
 
 def test_check_tells_what_the_disk_will_hold(tmp_path):
     case = load(write(tmp_path)["2d"], ["output.frames=0.1", "output.series=0.01", "output.milestones=0.5"])
-    frames, rows, checkpoints = estimate.disk(case)
+    frames, rows, checkpoints = estimate.disk(case, estimate.estimate(case).water)
     assert frames == 12 * (90 * 1950 + 2000) and rows == pytest.approx(100 * 1500) and checkpoints % 1950 == 0
     assert "disk       3.4 MB: 2.1 MB of frames, 150.0 kB of series, " in "\n".join(estimate.lines(case, 1))
 

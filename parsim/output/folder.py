@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from parsim.errors import InputError, WriteError
-from parsim.estimate import disk
+from parsim.estimate import disk, estimate
 from parsim.output import checkpoint, lock
 from parsim.output.frames import write_text
 from parsim.output.reader import MARK, is_output
@@ -138,7 +138,7 @@ def _remove(path):
 def _check_room(case, out):
     """Refuse a run whose output will not fit on the disk."""
     place = next(path for path in (out, *out.absolute().parents) if path.is_dir())
-    needed, free = sum(disk(case)), shutil.disk_usage(place).free
+    needed, free = sum(disk(case, estimate(case).water)), shutil.disk_usage(place).free
     if needed > free:
         raise WriteError(out, f"the output will take about {needed / 1e9:.2g} GB and {free / 1e9:.2g} GB are free; "
                               "write fewer frames (output.frames), or elsewhere")
