@@ -16,14 +16,14 @@ def test_standing_wave(amplitude):
     (coarse, lost), (fine, less) = (standing_wave(rows, amplitude, 0.005) for rows in (20, 40))
     told(amplitude=amplitude, frequency_20=coarse, frequency_40=fine, decay_20=lost, decay_40=less)
     for frequency, decay in ((coarse, lost), (fine, less)):
-        assert abs(frequency - 1.0) < 0.02, "1 % is the aim: what is left of the lattice's stiffness"
+        assert abs(frequency - 1.0) < 0.01
         assert 0.7 < decay < 1.3
 
 
 def test_standing_wave_in_3d():
     frequency, decay = standing_wave(20, 0.1, 0.005, across=8, periods=2.0)
     told(frequency=frequency, decay=decay)
-    assert abs(frequency - 1.0) < 0.015 and 0.7 < decay < 1.3
+    assert abs(frequency - 1.0) < 0.01 and 0.7 < decay < 1.3
 
 
 @pytest.mark.parametrize("rows", [10, 20])
@@ -32,7 +32,7 @@ def test_logarithmic_profile_is_kept_over_ten_depths(rows, disorder):
     kept = channel(rows, disorder)
     told(rows=rows, disorder=disorder, spread=kept["spread"], mean=kept["mean"], level=kept["level"],
          **{f"layer_{k}": share for k, share in enumerate(kept["layers"])})
-    assert kept["spread"] > 0.94, "0.95 is the aim"
+    assert kept["spread"] > 0.95
     assert np.abs(kept["layers"] - 1.0).max() < 0.03
     assert abs(kept["mean"] - 1.0) < 0.002
 
@@ -40,7 +40,7 @@ def test_logarithmic_profile_is_kept_over_ten_depths(rows, disorder):
 def test_logarithmic_profile_is_kept_in_3d():
     kept = channel(10, across=10)
     told(spread=kept["spread"], mean=kept["mean"], level=kept["level"])
-    assert kept["spread"] > 0.94 and np.abs(kept["layers"] - 1.0).max() < 0.03 and abs(kept["mean"] - 1.0) < 0.002
+    assert kept["spread"] > 0.95 and np.abs(kept["layers"] - 1.0).max() < 0.03 and abs(kept["mean"] - 1.0) < 0.002
 
 
 @pytest.mark.parametrize("weight", ["wendland_c2", "mps"])
@@ -58,9 +58,9 @@ def test_plug_flow_over_a_frictionless_bed_keeps_its_speed(rows, disorder):
     assert abs(kept["mean"] - 1.0) < 0.002
 
 
-@pytest.mark.parametrize("pressure, bar", [(0.0, 0.05), (2500.0, 0.05), (5000.0, 0.1)])
+@pytest.mark.parametrize("pressure, bar", [(0.0, 0.05), (2500.0, 0.05), (5000.0, 0.06)])
 def test_a_shear_wave_decays_by_its_viscosity_at_any_pressure(pressure, bar):
-    """5 % is the aim at 5000 Pa too, where the lattice's diagonal, before it breaks up, is still 20 % too stiff."""
+    """5 % is the aim at 5000 Pa too; 5 % is what the viscous operator itself is off at 40 rows."""
     found = [shear_wave(40, pressure, along) for along in (0.0, 1.0)]
     decay = np.mean([decay for decay, _, _ in found])
     told(pressure=pressure, decay=decay, decay_along=found[0][0], decay_diagonal=found[1][0],
