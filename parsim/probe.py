@@ -50,7 +50,8 @@ def _seconds():
     end[at] = start[at] + step.size
     fields = np.random.default_rng(1).uniform(1.0, 2.0, (8, x.size))
     arguments = (at, start, end, end, index, x, y, z, *fields, weights.WEIGHTS["wendland_c4"].of_radius(3.1), 1.0, 1.0,
-                 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 3.0, *np.zeros((7, x.size)), tuple(np.zeros((5, x.size))))
+                 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 3.0, np.full(x.size, -1, np.int32), *np.zeros((7, x.size)),
+                 tuple(np.zeros((5, x.size))))
     sweep = njit(kernels.continuity.py_func, error_model="numpy", nogil=True, fastmath=FAST)
     times = []
     for _ in range(_CALLS):
