@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from parsim import case_geometry as geometry
+from parsim.boundary.wall import walled_sides
 from parsim.state import FIELDS, WATER_BYTES
 
 RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine
@@ -151,11 +152,10 @@ def _immersed(case, body):
 
 def _walls(case, layers, height=1.0):
     """Wall particles outside the faces that are walls, up to a share `height` of the box."""
-    inner, outer = 1, 1
+    inner, outer, sides = 1, 1, [axis for axis, _, _ in walled_sides(case)]
     for axis in case.axes:
-        name, count = "xyz"[axis], round(case.box.size[axis] / case.spacing * (height if axis == 2 else 1.0))
-        sides = [getattr(case.box.faces, f"{name}_{side}") == "wall" for side in ("min", "max")]
-        inner, outer = inner * count, outer * (count + layers * sum(sides))
+        count = round(case.box.size[axis] / case.spacing * (height if axis == 2 else 1.0))
+        inner, outer = inner * count, outer * (count + layers * sides.count(axis))
     return outer - inner
 
 

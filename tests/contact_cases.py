@@ -35,8 +35,7 @@ def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), you
     numbers = SimpleNamespace(steps_per_contact=steps, foundation_depth=None)
     box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=SimpleNamespace(**faces | other))
     return SimpleNamespace(dimensions=3, axes=(0, 1, 2), gravity=gravity, contacts=numbers, gate=None,
-                           materials={"ice": material},
-                           wall_material="ice", box=box)
+                           materials={"ice": material}, wall_material="ice", box=box)
 
 
 def blocks(positions, **other):

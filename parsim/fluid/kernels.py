@@ -235,7 +235,7 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
         i = at[row]
         xi, yi, zi, ui, vi, wi, ni = x[i], y[i], z[i], u[i], v[i], w[i], n[i]
         bxi, byi, bzi = bx[i], by[i], bz[i]
-        divergence, diffusion, filled = 0.0, 0.0, 0.0
+        divergence, diffusion = 0.0, 0.0
         mxx, mxy, mxz, myy, myz, mzz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         sx, sy, sz = 0.0, 0.0, 0.0
         lx, ly, lz = 0.0, 0.0, 0.0
@@ -245,7 +245,6 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
             wt, g, _ = weight_at(weight, r2, inverse)
-            filled += wt
             gx, gy, gz = g * dx, g * dy, g * dz
             divergence += gx * (u[j] - ui) + gy * (v[j] - vi) + gz * (w[j] - wi)
             mxx, mxy, mxz = mxx + gx * dx, mxy + gx * dy, mxz + gx * dz
@@ -259,14 +258,15 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
             sx += f * gx
             sy += f * gy
             sz += f * gz
+        filled = mxx + myy + mzz  # the sum of W
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
-            wt, g, _ = weight_at(weight, r2, inverse)
-            filled += wt * scale[j] if body[j] >= 0 else 0.0
+            _, g, _ = weight_at(weight, r2, inverse)
             g *= scale[j]
+            filled += g * r2 if body[j] >= 0 else 0.0
             gx, gy, gz = g * dx, g * dy, g * dz
             divergence += gx * (u[j] - ui) + gy * (v[j] - vi) + gz * (w[j] - wi)
             mxx, mxy, mxz = mxx + gx * dx, mxy + gx * dy, mxz + gx * dz

@@ -159,9 +159,9 @@ def _walls(case):
     """Planes of the faces of the box that are walls, (n, 10): normal inwards, level, lowest and highest corner, m."""
     planes = list(walled_sides(case))
     walls = np.zeros((len(planes), 10))
+    walls[:, 4:] = np.concatenate(ends_of_walls(case))
     for row, (axis, side, level) in enumerate(planes):
         walls[row, axis], walls[row, 3] = -side, -side * level
-        walls[row, 4:7], walls[row, 7:] = ends_of_walls(case)
     return walls
 
 
