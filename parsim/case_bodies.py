@@ -5,10 +5,12 @@ import math
 import numpy as np
 
 from parsim import case_geometry as geometry
+from parsim.boundary.wall import walled_sides
 from parsim.case_fill import TOUCH, water_at
 from parsim.errors import nearest, suggestion
 
 GAUGE_REACH = 1.5  # spacings: a gauge reads the highest water within this distance
+PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
 
 
 def thinnest(case, body):
@@ -170,6 +172,19 @@ def gauges(case):
         for axis, value in enumerate((gauge.x, gauge.y))
         if not case.box.min[axis] <= value <= case.box.max[axis]
     ]
+
+
+def narrow_passages(case):
+    """(name, what is beside it, gap, m) of the passages of less than PASSAGE spacings beside bodies that are fixed."""
+    fixed, widest = [body for body in placed(case) if body.fixed], PASSAGE * case.spacing
+    boxes = [geometry.of_body(body) for body in fixed]
+    grown = [geometry.TurnedBox(box.centre, box.half + 0.5 * widest, box.axes) for box in boxes]
+    gaps = [(i, f"box.faces.{'xyz'[axis]}_{'min' if sign < 0 else 'max'}",
+             sign * (level - box.centre[axis]) - box.reach[axis])
+            for i, box in enumerate(boxes) for axis, sign, level in walled_sides(case)]  # fmt: skip
+    gaps += [(i, f"bodies.{fixed[j].name}", -geometry.overlap(boxes[i], boxes[j], shift))
+             for i, j, shift in geometry.near_pairs(grown, [_period(case, axis) for axis in range(3)])]
+    return [(fixed[i].name, other, gap) for i, other, gap in gaps if TOUCH < gap < widest - TOUCH]
 
 
 def blocked_gauges(case):

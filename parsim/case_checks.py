@@ -35,6 +35,10 @@ def doubts(case):
         f"output.gauges.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
         f"{case.spacing!r} m; until they move it reads the water under them"
         for name in bodies.blocked_gauges(case)
+    ] + [
+        f"bodies.{name}: leaves a passage of {gap:.3g} m, {gap / case.spacing:.2g} spacings, to {other}; water passes "
+        f"as it should through {bodies.PASSAGE:g} spacings or more"
+        for name, other, gap in bodies.narrow_passages(case)
     ] + _support(case) + fills.doubts(case)
 
 

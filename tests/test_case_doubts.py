@@ -140,3 +140,24 @@ def test_water_faster_than_expected_is_told(share, doubtful):
 def test_water_thinner_than_the_support_is_told(boxes, thin):
     said = told(fills(*boxes))
     assert thin in said if thin else "particles along" not in said
+
+
+@pytest.mark.parametrize(("z", "fixed", "words"), [
+    (0.07, True, "bodies.b0: leaves a passage of 0.02 m, 2 spacings, to box.faces.z_min"), (0.08, True, None),
+    (0.05, True, None), (0.07, False, None),
+])  # fmt: skip
+def test_a_narrow_passage_under_a_fixed_body_is_told(z, fixed, words):
+    body = {"name": "b0", "shape": {"size": [0.1, 1.0, 0.1]}, "density": 600.0, "material": "wood",
+            "position": [0.2, 0.5, z], "fixed": fixed}
+    said = told(fills((0.0, 0.4, 0.0, 0.3)) | {"bodies": [body]})
+    assert words in said if words else "passage" not in said
+
+
+@pytest.mark.parametrize(("gap", "words"), [
+    (0.025, "bodies.b0: leaves a passage of 0.025 m, 2.5 spacings, to bodies.b1"), (0.03, None), (0.0, None),
+])  # fmt: skip
+def test_a_narrow_passage_between_fixed_bodies_is_told(gap, words):
+    case = floes(gap)
+    case["bodies"] = [body | {"fixed": True} for body in case["bodies"]]
+    said = told(case)
+    assert words in said if words else "passage" not in said

@@ -1,0 +1,151 @@
+"""Bodies of any size, density, place and tilt, drawn at random: they start, and do what weight and water let them."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+from flows import simulation, tank
+from test_validate import told
+
+from parsim.case_geometry import TurnedBox, overlap, rotation
+from parsim.solid.rotation import matrices
+
+GRAVITY, SPACING, DENSITY = 9.81, 0.01, 1000.0
+SOLID = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}
+PLATE = 0.57 * math.pi / 4.0  # added mass of a square plate over density times its side cubed (Lamb 1932, art. 71)
+
+
+def least_added_mass(size):
+    """Least added mass of a box, kg, along any of its edges: that of a plate, half of it at the surface."""
+    a, b, c = sorted(size)
+    return 0.5 * PLATE * DENSITY * a * a * b
+
+
+def lone_body(dice, flat, most):
+    """A case with one body of up to `most` particles along an edge, anywhere in a tank with room for it."""
+    edges = [SPACING * dice.uniform(2.0, most) for _ in range(2 if flat else 3)]
+    size = [edges[0], 1.0 if flat else edges[2], edges[1]]
+    reach = math.hypot(*edges)
+    length, across = (SPACING * math.ceil(f * reach / SPACING) for f in (2.0, 1.5))
+    level = SPACING * math.ceil(dice.uniform(0.6, 1.5) * reach / SPACING)
+    case = tank(length, level + across, SPACING, (length, level), None if flat else across)
+    middle = 0.5 if flat else 0.5 * across
+    z = dice.uniform(0.5 * reach, level + 0.4 * reach)
+    tilts = [0.0, dice.choice((0.0, dice.uniform(-90.0, 90.0))), 0.0]
+    if not flat and dice.random() < 0.5:
+        tilts = [dice.uniform(-90.0, 90.0) for _ in range(3)]
+    body = {"name": "a", "shape": {"size": size}, "density": 10.0 ** dice.uniform(0.0, math.log10(8000.0)),
+            "material": "m", "position": [0.5 * length, middle, z], "angles": tilts}
+    case["run"]["settle"] = 0.0
+    return case | {"materials": {"m": SOLID}, "bodies": [body]}
+
+
+def speeds(case, until):
+    """Speed of the body's centre over the most that weight, buoyancy and added mass allow until then, s by s."""
+    s = simulation(case)
+    size, mass = case["bodies"][0]["shape"]["size"], s.bodies.mass[0]
+    lift = DENSITY * math.prod(size) * GRAVITY / (mass + least_added_mass(size))
+    most = 0.0
+    while s.time < until:
+        s.step()
+        most = max(most, np.linalg.norm(s.bodies.velocity[0]) / (max(GRAVITY, lift) * s.time))
+    return most
+
+
+@pytest.mark.parametrize(("flat", "most", "until", "seeds"), [
+    (True, 15, 0.05, range(12)), (False, 6, 0.02, range(4)),
+    pytest.param(True, 60, 0.2, range(100, 200), marks=pytest.mark.slow),
+    pytest.param(False, 15, 0.2, range(100, 115), marks=pytest.mark.slow),
+])  # fmt: skip
+def test_no_body_is_faster_than_weight_and_water_make_it(flat, most, until, seeds):
+    """Drag and neighbours only slow it down; 1.1 for the sound in water that is squeezed at the start."""
+    worst = {seed: speeds(lone_body(random.Random(seed), flat, most), until) for seed in seeds}
+    assert max(worst.values()) < 1.1, worst
+
+
+def heap(dice):
+    """A case of 3 to 40 boxes of any density, apart from one another, in and over still water."""
+    flat, spacing = dice.random() < 0.7, dice.choice((0.005, 0.01, 0.02))
+    count = round(math.exp(dice.uniform(math.log(3.0), math.log(40.0 if flat else 12.0))))
+    most = 10.0 if flat else 5.0  # particles along an edge
+    edges = [[spacing * dice.uniform(2.0, most) for _ in range(3)] for _ in range(count)]
+    across = 1.0 if flat else 1.6 * most * spacing
+    covered = sum(a if flat else a * b / across for a, b, _ in edges)
+    length = spacing * max(round(2.0 * most), round(1.5 * covered / spacing))
+    level = spacing * round(dice.uniform(10.0, 20.0) if flat else dice.uniform(6.0, 9.0))
+    case, bodies = tank(length, 2.5 * level, spacing, (length, level), None if flat else across), []
+    corner = np.array(case["box"]["max"])
+    while len(bodies) < count:
+        a, b, c = edges[len(bodies)]
+        body = {"name": f"b{len(bodies)}", "shape": {"size": [a, 1.0 if flat else b, c]}, "material": "m",
+                "density": dice.uniform(*dice.choice(((50.0, 950.0), (850.0, 950.0), (1050.0, 4000.0))))}
+        for _ in range(2000):
+            body["position"] = [dice.uniform(0.0, length), 0.5 if flat else dice.uniform(0.0, across),
+                                dice.uniform(0.0, 2.0 * level)]
+            body["angles"] = [0.0, dice.choice((0.0, dice.uniform(-45.0, 45.0))), 0.0]
+            box = turned(body)
+            within = np.all(box.corners >= 0.0) and np.all(box.corners <= corner)
+            if within and all(overlap(box, turned(other)) < 0.0 for other in bodies):
+                break
+        else:
+            count = len(bodies)
+            break
+        bodies.append(body)
+    case["run"]["settle"] = 0.0
+    return case | {"materials": {"m": SOLID}, "bodies": bodies}
+
+
+def turned(body):
+    """The box of a body that is a dict."""
+    return TurnedBox(np.array(body["position"]), np.array(body["shape"]["size"]) / 2.0, rotation(body["angles"]))
+
+
+def sunk_volume(bodies, level, points=24):
+    """Volume of each body below a level, m3, by the cells of a box whose middle is below it."""
+    steps = (np.arange(points) + 0.5) / points * 2.0 - 1.0
+    cells = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), -1).reshape(-1, 3)
+    up = matrices(bodies.quaternion)[:, 2, :]  # of a body's axes along z
+    heights = bodies.position[:, 2, None] + (up * bodies.half) @ cells.T
+    return (heights < level).mean(axis=1) * 8.0 * bodies.half.prod(axis=1)
+
+
+def level_of(s):
+    """Height of the water, m, that with what is under it of the bodies fills the tank."""
+    size = s.case.box.size
+    water, area = s.near.fluid.size * s.scheme.lattice.volume, size[0] * size[1]
+    low, high = 0.0, size[2]
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        short = water + sunk_volume(s.bodies, middle).sum() > middle * area
+        low, high = (middle, high) if short else (low, middle)
+    return low
+
+
+def come_to_rest(case, until=5.0):
+    """Over the last second, for each body: largest speed, m/s, and its height off where its weight is carried, m.
+
+    Carried by the water under the level and by what it touches: (m g - contact) / (rho g) is to be under water.
+    """
+    s = simulation(case)
+    size, rows = np.array([body["shape"]["size"] for body in case["bodies"]]), []
+    while s.time < until:
+        s.step()
+        if s.time > until - 1.0:
+            contact = s.bodies.contact_load[:, 2]
+            needed = np.clip((s.bodies.mass * GRAVITY - contact) / (DENSITY * GRAVITY), 0.0, s.bodies.volume)
+            sunk = sunk_volume(s.bodies, level_of(s)) if s.step_count % 50 == 0 else np.full(len(size), np.nan)
+            rows.append([np.linalg.norm(s.bodies.velocity, axis=1), needed, sunk])
+    speed, needed, sunk = np.array(rows).transpose(1, 0, 2)
+    return s, speed, (np.nanmean(sunk, axis=0) - needed.mean(axis=0)) / (size[:, 0] * size[:, 1])
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("seed", range(50))
+def test_boxes_in_still_water_come_to_rest_at_their_draughts(seed):
+    case = heap(random.Random(seed))
+    s, speed, off = come_to_rest(case)
+    told(seed=seed, bodies=len(off), spacing=s.case.spacing, speed=speed.max(),
+         off_in_spacings=np.abs(off).max() / s.case.spacing)
+    assert np.abs(off).max() < 0.25 * s.case.spacing
+    assert np.sqrt((speed**2).mean(axis=0)).max() < 0.05
