@@ -79,12 +79,12 @@ failed() {
 install() { "$python" -m pip install --no-input --retries 2 --disable-pip-version-check "$@" >>"$log" 2>&1; }
 
 # -P, here and in the other scripts: files of the folder one stands in are not importable
-mpi_fault() { "$python" -P -c 'from parsim.launch import fault; print(fault())' 2>>"$log"; }
+mpi_fault() { "$python" -P -c 'from parsim.launch.mpirun import fault; print(fault())' 2>>"$log"; }
 
 # The system's MPI where two ranks of it can add up their numbers, else the one on PyPI, which needs no root.
 find_mpi() {
     local fault
-    fault=$(mpi_fault) || failed "parsim.launch does not start"
+    fault=$(mpi_fault) || failed "parsim.launch.mpirun does not start"
     [[ -z $fault ]] && return
     printf 'MPI of the system: %s\n' "$fault" >>"$log"
     say "the system has no MPI that works with mpi4py: installing Open MPI from PyPI into .venv"

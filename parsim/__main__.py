@@ -8,9 +8,10 @@ from typing import Annotated
 
 import typer
 
-from parsim import __version__, exits, stop
+from parsim import __version__
+from parsim.case.examples import path_of
 from parsim.errors import InputError
-from parsim.examples import path_of
+from parsim.launch import exits, stop
 
 app = typer.Typer(
     help="Free-surface flow carrying solids. SI units; exit codes: 0 done, 1 failed, 2 bad input, 3 a comparison "
@@ -70,17 +71,17 @@ def run(
     walltime: Walltime = None,
 ):
     """Run a case. Under mpirun or srun every rank runs this command."""
-    from parsim.check import load
+    from parsim.case.load import load
 
     case = path_of(case)
     loaded, limit = load(case, changes, until, table, row), _settings(threads, kernel, walltime)
     if ranks:
         words = ["run", case, "-o", out, *_words(changes, table, row), *["--force"] * force]
         return _launched(ranks, words, until, kernel, limit)
-    from parsim.warm import prepare
+    from parsim.run.warm import prepare
 
     prepare()
-    from parsim.solver import run as solve
+    from parsim.run.loop import run as solve
 
     return solve(loaded, case, out, force, limit)
 
@@ -100,11 +101,11 @@ def resume(
     row: Row = None,
 ):
     """Go on with a run from its newest whole checkpoint, on any number of ranks, to the same bits."""
-    from parsim import variant
-    from parsim.check import load
-    from parsim.comm import Comm
+    from parsim.case.load import load
+    from parsim.domain.comm import Comm
+    from parsim.machine import variant
     from parsim.output import folder as folders
-    from parsim.resume import find
+    from parsim.run.resume import find
 
     limit = _settings(threads, kernel, walltime)
     if case is None and (changes or table or row):
@@ -121,17 +122,17 @@ def resume(
             return exits.DONE
         if found.kernel:
             os.environ[variant.NAME] = variant.checked(found.kernel)
-        from parsim.warm import prepare
+        from parsim.run.warm import prepare
 
         prepare()
-        from parsim.solver import resume as solve
+        from parsim.run.loop import resume as solve
 
         return solve(found, folder, limit)
 
 
 def _settings(threads, kernel, walltime):
     """Hand threads and kernel variant on to this process and its children; returns the walltime in s, or None."""
-    from parsim import variant
+    from parsim.machine import variant
 
     if threads:
         os.environ["NUMBA_NUM_THREADS"] = str(threads)
@@ -147,7 +148,7 @@ def _words(changes, table, row):
 
 
 def _launched(ranks, words, until, kernel, limit):
-    from parsim.launch import mpirun, world
+    from parsim.launch.mpirun import mpirun, world
 
     if world()[1] > 1:
         raise InputError(f"-n {ranks}: {world()[1]} processes of this command are running already; leave -n out")
@@ -168,7 +169,7 @@ def check(
     table: TableFile = None,
 ):
     """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
-    from parsim.check import main as checked
+    from parsim.commands.check import main as checked
 
     checked(path_of(case), changes, until, ranks, table)
 
@@ -176,7 +177,7 @@ def check(
 @command
 def info(out: Folder):
     """Say what an output folder holds."""
-    from parsim.output.about import main as told
+    from parsim.commands.info import main as told
 
     told(out)
 
@@ -214,7 +215,7 @@ def bench(
 @command
 def doctor():
     """Say whether this machine can run parsim: packages, MPI, threads, disk."""
-    from parsim.doctor import main as examined
+    from parsim.commands.doctor import main as examined
 
     return examined()
 
@@ -224,7 +225,7 @@ def schema():
     """Print the JSON schema of case files, for editors that complete and check TOML."""
     import json
 
-    from parsim.case import schema as case_schema
+    from parsim.case.model import schema as case_schema
 
     print(json.dumps(case_schema(), indent=2))
 
@@ -237,7 +238,7 @@ def new(
     listed: Annotated[bool, typer.Option("--list", help="print the examples")] = False,
 ):
     """Write a case to start from; never overwrites."""
-    from parsim import new as cases
+    from parsim.commands import new as cases
 
     if listed:
         cases.show()

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from parsim.cells import Grid
-from parsim.comm import Comm
-from parsim.domain import Domain
-from parsim.neighbours import Neighbours
-from parsim.state import FLUID, WALL, Particles, make_id
+from parsim.domain.comm import Comm
+from parsim.domain.domain import Domain
+from parsim.particles.cells import Grid
+from parsim.particles.neighbours import Neighbours
+from parsim.particles.state import FLUID, WALL, Particles, make_id
 
 
 def _mps(r, radius):

@@ -7,11 +7,12 @@ list, for each case the names of its kernels that numba's cache has missed.
 import json
 import sys
 
-from parsim import case as cases
-from parsim import check, warm
-from parsim.comm import Comm
-from parsim.output.measure import Measure
-from parsim.solver import Simulation
+from parsim.case import model as cases
+from parsim.case.load import load
+from parsim.domain.comm import Comm
+from parsim.observe.measure import Measure
+from parsim.run import warm
+from parsim.run.simulation import Simulation
 
 from numba.core.dispatcher import Dispatcher  # isort: skip (the settings of numba must come first)
 
@@ -42,7 +43,7 @@ def main(wanted):
     told = []
     for case in wanted:
         before = missed()
-        run(cases.parse(case) if isinstance(case, dict) else check.load(*case))
+        run(cases.parse(case) if isinstance(case, dict) else load(*case))
         told.append([name for name, count in missed().items() if count > before.get(name, 0)])
     return told
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from parsim import launch, warm
+from parsim.launch import mpirun as launch
+from parsim.run import warm
 
 PATIENCE = 120  # s for one job
 MANY = 1000  # tests, about all of them
@@ -23,7 +24,7 @@ def pytest_configure(config):
 
 def pytest_collection_finish(session):
     """Compile all kernels ahead of many tests; few may need few of them, which are then compiled as they are used."""
-    if len(session.items) > MANY and "parsim.jit" in sys.modules:
+    if len(session.items) > MANY and "parsim.machine.jit" in sys.modules:
         warm.prepare()
 
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from parsim.geometry.rotation import from_angles, matrices, turn_of
 from parsim.solid.bodies import Bodies
-from parsim.solid.rotation import from_angles, matrices, turn_of
 
 HALF, MASS, MU = (0.03625, 0.03625, 0.00975), 0.089, 0.412
 GRAVITY = (0.0, 0.0, -9.81)

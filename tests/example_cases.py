@@ -3,7 +3,7 @@
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-SPACE = (ROOT / "parsim" / "starter.toml").read_text(encoding="utf-8")
+SPACE = (ROOT / "parsim" / "commands" / "starter.toml").read_text(encoding="utf-8")
 PLANE = """
 dimensions = 2
 spacing = 0.01

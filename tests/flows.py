@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from parsim.case import parse
-from parsim.comm import Comm
-from parsim.solver import Simulation
+from parsim.case.model import parse
+from parsim.domain.comm import Comm
+from parsim.run.simulation import Simulation
 
 GRAVITY = 9.81
 WOOD = {"wood": {"young": 1e9, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}}

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 import parsim
-from parsim import launch
+from parsim.launch import mpirun
 
 CASE = Path(__file__).with_name("survive.toml")
 PATIENCE = 120.0
@@ -20,11 +20,11 @@ class Job:
     def __init__(self, words, ranks=1, bare=False, log=None, program=("-m", "parsim")):
         line = [sys.executable, *program, *map(str, words)]
         if bare:
-            line = launch.command(ranks, line)
+            line = mpirun.command(ranks, line)
         elif ranks > 1:
             line += ["-n", str(ranks)]
         self.log = open(log, "a+") if log else subprocess.DEVNULL
-        self.process = subprocess.Popen(line, env=launch.environment(), stdin=subprocess.DEVNULL, stdout=self.log,
+        self.process = subprocess.Popen(line, env=mpirun.environment(), stdin=subprocess.DEVNULL, stdout=self.log,
                                         stderr=self.log, start_new_session=True)
 
     def until(self, happened):

@@ -9,8 +9,8 @@ from clouds import cloud, listed
 from parsim import bench
 from parsim.__main__ import main
 from parsim.bench import account, cases, limits, model, worker
-from parsim.case import parse
-from parsim.timers import Timers
+from parsim.case.model import parse
+from parsim.machine.timers import Timers
 
 NUMBERS = ("kernel_ns_per_pair", "step_rate_31", "step_rate_21", "ranks_efficiency", "threads_efficiency", "imbalance",
            "bytes_per_particle", "start_warm_s", "start_cold_s")
@@ -51,8 +51,8 @@ def test_a_measurement_that_fails_says_why():
 
 
 def test_single_sweeps_are_timed_per_true_pair():
-    from parsim.comm import Comm
-    from parsim.solver import Simulation
+    from parsim.domain.comm import Comm
+    from parsim.run.simulation import Simulation
 
     found = limits.sweeps(Simulation(parse(SMALL["case"]), Comm()), 1)
     assert {"momentum", "continuity", "gathers", "lists", "momentum_in_cache"} < set(found)
@@ -114,7 +114,7 @@ def test_the_model_predicts_where_slabs_stop():
 
 def test_a_phase_inside_another_is_not_counted_twice(monkeypatch):
     now = iter([0.0, 0.0, 1.0, 4.0, 6.0, 10.0, 11.0])
-    monkeypatch.setattr("parsim.timers.time.perf_counter", lambda: next(now))
+    monkeypatch.setattr("parsim.machine.timers.time.perf_counter", lambda: next(now))
     timers = Timers()
     with timers("sweep"):
         with timers("halo"):

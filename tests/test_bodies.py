@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from parsim.case_geometry import rotation
+from parsim.geometry.boxes import rotation
+from parsim.geometry.rotation import from_angles, matrices
 from parsim.solid.bodies import Bodies, from_case
-from parsim.solid.rotation import from_angles, matrices
 
 INERTIA = (1.0, 2.0, 3.0)
 

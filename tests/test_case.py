@@ -10,7 +10,7 @@ from example_cases import FLOWING, PLANE, ROOT, SPACE, write
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from parsim.case import Case, load, parse, schema
+from parsim.case.model import Case, load, parse, schema
 from parsim.errors import InputError
 
 FILES = sorted((ROOT / "cases").rglob("[!_]*.toml"))

@@ -7,8 +7,8 @@ import pytest
 from example_cases import ROOT
 from test_water import TANK
 
-from parsim.case import load, parse
-from parsim.case_fill import level_over, water_at
+from parsim.case.fill import level_over, water_at
+from parsim.case.model import load, parse
 
 CLOSED = TANK | {"box": {"max": [0.4, 1.0, 0.4]}}
 

@@ -13,10 +13,10 @@ from example_cases import FLOWING, PLANE, ROOT, SPACE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from parsim import estimate
 from parsim.__main__ import main
-from parsim.case import load
-from parsim.case_file import read
+from parsim.case import estimate
+from parsim.case.file import read
+from parsim.case.model import load
 from parsim.errors import InputError
 
 FEW, MANY = 250, 10_000
@@ -163,10 +163,10 @@ def judge(path, data, overrides=()):
 
 def take_steps(case):
     """Build a case and take two steps."""
-    from parsim.comm import Comm
+    from parsim.domain.comm import Comm
+    from parsim.domain.grid import check_ranks
     from parsim.errors import RunError
-    from parsim.setup import check_ranks
-    from parsim.solver import Simulation
+    from parsim.run.simulation import Simulation
 
     with contextlib.suppress(InputError, RunError):
         check_ranks(case, 1)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from example_cases import bodies, write
 
-from parsim import case_geometry as geometry
-from parsim.case import load
+from parsim.case.model import load
 from parsim.errors import InputError
+from parsim.geometry import boxes as geometry
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import pytest
 from example_cases import bodies, write
 
 from parsim.__main__ import main
-from parsim.case import load
+from parsim.case.model import load
 from parsim.errors import nearest, suggestion
 
 

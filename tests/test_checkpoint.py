@@ -10,13 +10,14 @@ import pytest
 from test_water import POOL, simulation
 
 import parsim
-from parsim import stop, variant
 from parsim.__main__ import main
-from parsim.comm import Comm
+from parsim.domain.comm import Comm
 from parsim.errors import InputError
+from parsim.launch import stop
+from parsim.machine import variant
 from parsim.output import checkpoint
-from parsim.resume import find
-from parsim.state import OF_WATER
+from parsim.particles.state import OF_WATER
+from parsim.run.resume import find
 
 CASE = Path(__file__).with_name("survive.toml")
 SHORT = ["--set", "output.frames=0.02"]
@@ -61,7 +62,7 @@ def test_ranks_read_all_of_it_between_them(written):
 
 
 def test_a_restored_simulation_takes_the_same_steps(written):
-    from parsim.solver import Simulation
+    from parsim.run.simulation import Simulation
 
     path, _, s = written
     other = Simulation(s.case, Comm(), checkpoint.Checkpoint(path).snapshot(0, 1))

@@ -12,10 +12,13 @@ import pytest
 from example_cases import ROOT, write
 from fake_run import make
 
-from parsim import __version__, estimate, examples, launch, warm
+from parsim import __version__
 from parsim.__main__ import main
-from parsim.case import load
+from parsim.case import estimate, examples
+from parsim.case.model import load
 from parsim.errors import InputError, WriteError
+from parsim.launch import mpirun as launch
+from parsim.run import warm
 
 BLOCKS = ROOT / "cases" / "ice_release" / "4_blocks_dry.toml"
 LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK")
@@ -24,7 +27,7 @@ LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK")
 @pytest.fixture
 def solver(monkeypatch):
     """A solver that notes what it is asked for and ends as `solver.ending` says."""
-    fake = types.ModuleType("parsim.solver")
+    fake = types.ModuleType("parsim.run.loop")
     fake.calls, fake.ending = [], 0
 
     def run(case, source, out, force, walltime):
@@ -34,7 +37,7 @@ def solver(monkeypatch):
         return fake.ending
 
     fake.run = run
-    monkeypatch.setitem(sys.modules, "parsim.solver", fake)
+    monkeypatch.setitem(sys.modules, "parsim.run.loop", fake)
     monkeypatch.setattr(warm, "prepare", lambda: None)  # it needs no kernels
     return fake
 
@@ -138,9 +141,9 @@ def test_check_prints_the_estimate_and_warnings(capsys):
 @pytest.mark.parametrize("name", ["ice_release/4_blocks_dry", "ice_release/9_blocks_50mm", "floating_square/half"])
 def test_estimate_counts_what_is_built(name):
     from parsim.boundary.wall import Walls
-    from parsim.coupling import BodySamples
-    from parsim.fluid.wcmps import WCMPS
-    from parsim.setup import water
+    from parsim.coupling.samples import BodySamples
+    from parsim.fluid.wcmps.scheme import WCMPS
+    from parsim.run.fill import water
     from parsim.solid.bodies import from_case
 
     case = load(ROOT / "cases" / f"{name}.toml")
@@ -193,7 +196,7 @@ def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, caps
 def test_an_example_is_found_by_name_anywhere_and_can_be_had_as_one_file(tmp_path, capsys, monkeypatch):
     """From an installed package, where no checkout is around."""
     shutil.copytree(ROOT / "cases", tmp_path / "site" / "parsim" / "cases")
-    monkeypatch.setattr(examples, "__file__", str(tmp_path / "site" / "parsim" / "examples.py"))
+    monkeypatch.setattr(examples, "__file__", str(tmp_path / "site" / "parsim" / "case" / "examples.py"))
     monkeypatch.chdir(tmp_path)
     assert main(["new", "--list"]) == 0
     assert "ice_release/4_blocks_dry     Ice release, case 1: four blocks, a dry bed\n" in capsys.readouterr().out
@@ -211,7 +214,7 @@ def test_a_run_of_an_example_takes_its_reference_along(solver, tmp_path, monkeyp
     assert main(["run", "ice_release/4_blocks_dry", "-o", "out"]) == 0
     assert solver.calls[0][1].with_name("reference.csv").read_text() == BLOCKS.with_name("reference.csv").read_text()
     (tmp_path / "ice_release").mkdir()
-    (tmp_path / "ice_release" / "4_blocks_dry").write_text((ROOT / "parsim" / "starter.toml").read_text())
+    (tmp_path / "ice_release" / "4_blocks_dry").write_text((ROOT / "parsim" / "commands" / "starter.toml").read_text())
     assert main(["run", "ice_release/4_blocks_dry", "-o", "out"]) == 0
     assert solver.calls[1][1] == Path("ice_release/4_blocks_dry"), "a file comes before an example"
 
@@ -262,7 +265,7 @@ def test_info_tells_of_a_run(tmp_path, capsys):
 FAILING = """
 import sys, types
 from mpi4py import MPI
-from parsim import warm
+from parsim.run import warm
 from parsim.__main__ import main
 from parsim.errors import InputError, WriteError
 
@@ -272,7 +275,7 @@ def run(case, source, out, force, walltime):
         raise endings[sys.argv[1]]
     MPI.COMM_WORLD.recv(source=1)
 
-sys.modules["parsim.solver"] = types.SimpleNamespace(run=run)
+sys.modules["parsim.run.loop"] = types.SimpleNamespace(run=run)
 warm.prepare = lambda: None
 sys.exit(main(["run", sys.argv[2], "-o", "out"]))
 """

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from contact_cases import FLAT, GRAVITY, Plate, blocks, budget, case, go
 
+from parsim.geometry.rotation import from_angles, turn_of, turned
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
-from parsim.solid.rotation import from_angles, turn_of, turned
 from parsim.solid.separation import direction
 
 DRAWS, STEPS = 2000, 10

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from contact_cases import HALF, blocks, case
 
-from parsim import case_geometry
+from parsim.geometry.boxes import TurnedBox, overlap
+from parsim.geometry.rotation import matrices
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
-from parsim.solid.elements import elements_of
-from parsim.solid.rotation import matrices
 from parsim.solid.search import AREA, DEPTH, INDEX, MIDDLE, POINT
 from parsim.solid.separation import best_feature, depth_in_box
+from parsim.solid.shapes.box import elements_of
 from parsim.solid.touch import measure, normal_of
 
 
@@ -29,8 +29,8 @@ def test_separating_axes_agree_with_the_exact_overlap():
     for seed in range(200):
         bodies = random_pair(seed)
         turn = matrices(bodies.quaternion)
-        boxes = [case_geometry.TurnedBox(p, h, t) for p, h, t in zip(bodies.position, bodies.half, turn, strict=True)]
-        exact = case_geometry.overlap(*boxes)
+        boxes = [TurnedBox(p, h, t) for p, h, t in zip(bodies.position, bodies.half, turn, strict=True)]
+        exact = overlap(*boxes)
         contacts = Contacts(bodies, case(walls=()))
         contacts._prepare(bodies, bodies.fixed, 0.0, 0.0)
         feature, apart = best_feature(contacts._table, 0, 1, (0.0, 0.0, 0.0), False)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from contact_cases import CORNER, EDGE, FLAT, HALF, MASS, MU, Plate, blocks, budget, case, go, momenta
 
+from parsim.geometry.rotation import from_angles
 from parsim.solid import contacts as contacts_module
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
-from parsim.solid.elements import elements_of
-from parsim.solid.hertz import damping_of
-from parsim.solid.rotation import from_angles
+from parsim.solid.laws.foundation import damping_of
+from parsim.solid.shapes.box import elements_of
 
 
 def drop(quaternion, **options):

@@ -7,8 +7,8 @@ import pytest
 from clouds import lattice, listed
 from test_sweeps import sweep
 
-from parsim.fluid import kernels, updates
 from parsim.fluid.reference import Lattice
+from parsim.fluid.wcmps import sweeps, updates
 from parsim.fluid.weights import WEIGHTS
 
 SPACING = 0.1
@@ -32,7 +32,7 @@ def twofold(domain, near, scheme, velocity):
     p.u[:], p.v[:], p.w[:] = velocity.T
     sweep(p, near, scheme)
     domain.refresh("bx", "by", "bz")
-    kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
+    sweeps.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                        3.0, p.body, *nothing, p.ex, p.ey, p.ez, tuple(np.zeros((5, len(p)))))
     return [np.stack(fields, 1)[near.fluid] for fields in ((p.bx, p.by, p.bz), (p.ex, p.ey, p.ez))]

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from parsim import exact
+from parsim.domain import exact
 
 
 def total(values, index=None, rows=1):

@@ -98,7 +98,7 @@ def test_five_pieces_are_one_run(whole, tmp_path, started, capsys):
 HANGS = """
 import os, signal, sys, time
 from parsim.__main__ import main
-from parsim.solver import Simulation
+from parsim.run.simulation import Simulation
 
 how, rank, *words = sys.argv[1:]
 step = Simulation.step

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from test_water import TANK, simulation
 
-from parsim.case import Fill, parse
-from parsim.case_fill import profile_shares
-from parsim.fluid.wcmps import WCMPS
-from parsim.setup import flow, water
-from parsim.shapes import Lattice, disordered, outside_box
+from parsim.case.fill import profile_shares
+from parsim.case.model import Fill, parse
+from parsim.fluid.wcmps.scheme import WCMPS
+from parsim.geometry.rotation import matrices
+from parsim.particles.lattice import Lattice
+from parsim.particles.state import FLUID, make_id
+from parsim.run.fill import disordered, flow, outside_box, water
 from parsim.solid.bodies import from_case
-from parsim.solid.rotation import matrices
-from parsim.state import FLUID, make_id
 
 CHANNEL = TANK | {"box": {"max": [0.2, 1.0, 0.2], "faces": {"x_min": "periodic", "x_max": "periodic"}}}
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from test_water import POOL, SQUARE, TANK, simulation
 
+from parsim.coupling.films import gap_to_box, gap_to_plane
 from parsim.errors import InputError
-from parsim.films import gap_to_box, gap_to_plane
 
 WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
 SPREAD = 0.1  # of the lift of a fixed body six particles thick, also in the open; without films it is -4 on the bed

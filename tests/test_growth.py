@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from test_water import POOL, simulation
 
-from parsim.output.measure import Measure
+from parsim.observe.measure import Measure
 
 LONG, EVERY = 100_000, 500
 

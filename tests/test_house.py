@@ -32,9 +32,10 @@ REDUCTIONS = {
 }
 ROUNDED = {"pow", "power", "exp", "expm1", "log", "log1p", "log2", "log10", "sin", "cos", "tan", "tanh", "sinh", "cosh"}
 COMPILED = {"kernel", "each", "rows", "implements"}
-STRICT = ("fluid/", "neighbours.py", "cells.py", "coupling.py", "films.py")
-ABOVE_KERNELS = {"comm", "domain", "solver", "setup", "launch", "case", "output", "report"}
+STRICT = ("fluid/", "particles/", "coupling/")
+ABOVE_KERNELS = {"case", "commands", "launch", "observe", "output", "report", "run"}
 BESIDE_REPORT = {"output", "errors", "case", "report", "launch"}
+PHYSICS = ("boundary/", "coupling/", "fluid/", "particles/", "solid/")
 
 
 def name(path):
@@ -128,14 +129,14 @@ def test_imports(path):
     parsed = tree(path)
     used, inside = imports(parsed), name(path).removeprefix("parsim/")
     roots = {word.split(".")[0] for word in used}
-    assert "mpi4py" not in roots or inside == "comm.py", "only comm.py imports mpi4py"
-    assert not {"numba.njit", "numba.jit"} & used or inside == "jit.py", "kernels are made by parsim.jit"
-    if any(kernels(parsed)) and inside != "jit.py":
+    assert "mpi4py" not in roots or inside == "domain/comm.py", "only domain/comm.py imports mpi4py"
+    assert not {"numba.njit", "numba.jit"} & used or inside == "machine/jit.py", "kernels are made by machine/jit.py"
+    if any(kernels(parsed)) and not inside.startswith(("machine/", "bench/", "observe/")):
         assert not own(parsed) & ABOVE_KERNELS, "kernels import downward only"
     if inside.startswith("report/"):
         assert own(parsed) <= BESIDE_REPORT, "report reads files and knows no solver"
-    if inside.startswith(("fluid/", "solid/", "boundary/", "coupling", "films")):
-        assert not own(parsed) & {"comm", "launch"}, "the physics never sees a rank"
+    if inside.startswith(PHYSICS):
+        assert not own(parsed) & {"domain", "launch", "run"}, "the physics never sees a rank"
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name)

@@ -9,8 +9,9 @@ import time
 
 import pytest
 
-from parsim import doctor, launch
+from parsim.commands import doctor
 from parsim.errors import InputError
+from parsim.launch import mpirun as launch
 
 LAUNCHED = {
     "Open MPI": {"OMPI_COMM_WORLD_SIZE": "4", "OMPI_COMM_WORLD_RANK": "1"},
@@ -97,7 +98,7 @@ def test_usr1_reaches_the_ranks(program):
         "print('ready', flush=True)\n"
         "time.sleep(30)\n"
     )
-    line = (f"import sys; from parsim import launch; launch._STARTING = 0.5; "
+    line = (f"import sys; from parsim.launch import mpirun as launch; launch._STARTING = 0.5; "
             f"sys.exit(launch.mpirun(2, [sys.executable, {str(ranks)!r}]))")
     with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
         assert [job.stdout.readline() for _ in range(2)] == ["ready\n", "ready\n"]
@@ -133,13 +134,13 @@ def test_ranks_on_other_machines_know_the_settings(program, monkeypatch):
 def test_mpirun_does_not_hear_what_a_scheduler_sends_to_all(program):
     ranks = program(
         "import os, signal, sys, time\n"
-        "from parsim import stop\n"
+        "from parsim.launch import stop\n"
         "stop.listen()\n"
         "signal.signal(signal.SIGUSR1, lambda *_: sys.exit(75))\n"
         "print(os.getppid(), flush=True)\n"
         "time.sleep(30)\n"
     )
-    line = (f"import sys; from parsim import launch; launch._STARTING = 0.5; "
+    line = (f"import sys; from parsim.launch import mpirun as launch; launch._STARTING = 0.5; "
             f"sys.exit(launch.mpirun(1, [sys.executable, {str(ranks)!r}]))")
     with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
         os.kill(int(job.stdout.readline()), signal.SIGTERM)
@@ -164,7 +165,7 @@ def test_signals_that_nohup_ignores_stay_ignored():
 
 
 def test_the_terminal_that_open_mpi_gives_its_ranks_is_not_taken_for_one(mpirun, program):
-    ran = mpirun(2, program("from parsim import launch; print('columns', launch.terminal())"))
+    ran = mpirun(2, program("from parsim.launch import mpirun as launch; print('columns', launch.terminal())"))
     assert ran.stdout.split() == ["columns", "0"] * 2, ran.stderr
 
 
@@ -172,7 +173,8 @@ def test_what_is_in_a_log_stays_there(program, tmp_path):
     log = tmp_path / "log"
     log.write_text("earlier\n")
     with open(log, "a") as file:
-        line = launch.command(2, [sys.executable, program("from parsim import launch; print(launch.terminal())")])
+        asks = program("from parsim.launch import mpirun as launch; print(launch.terminal())")
+        line = launch.command(2, [sys.executable, asks])
         subprocess.run(line, env=launch.environment(), stdout=file, stdin=subprocess.DEVNULL, check=True)
     assert log.read_text().replace("\0", "").split() == ["earlier", "0", "0"]
 
@@ -190,8 +192,8 @@ def test_a_hanging_job_is_ended(mpirun, program):
 
 FAILS = """
 import sys
-from parsim.exits import code_of
-from parsim.comm import Comm
+from parsim.launch.exits import code_of
+from parsim.domain.comm import Comm
 from parsim.errors import InputError
 
 def work():

@@ -5,12 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
-from parsim.case import parse
-from parsim.comm import Comm
-from parsim.coupling import added_inertia
+from parsim.case.model import parse
+from parsim.coupling.samples import added_inertia
+from parsim.domain.comm import Comm
+from parsim.geometry.rotation import from_angles, matrices
+from parsim.run.simulation import Simulation
 from parsim.solid.acceleration import accelerate_bodies
-from parsim.solid.rotation import from_angles, matrices
-from parsim.solver import Simulation
 
 SQUARE, ADDED = 0.2, 1.18831  # m; added mass of a deep square over its displaced mass (1.513 pi / 4)
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from clouds import cloud, lattice, listed
 
-from parsim.balance import even_cuts, uneven
-from parsim.cells import HALO, LAYERS, REACH, Grid, Stack, occupied, sort_by_cell, sort_key, spread
-from parsim.neighbours import cut_rows, hidden
-from parsim.state import FLUID, GATE_DOWN, GATE_UP, Particles
+from parsim.domain.balance import even_cuts, uneven
+from parsim.particles.cells import HALO, LAYERS, REACH, Grid, Stack, occupied, sort_by_cell, sort_key, spread
+from parsim.particles.sight import cut_rows, hidden
+from parsim.particles.state import FLUID, GATE_DOWN, GATE_UP, Particles
 
 
 def test_sort_is_by_cell_then_id():

@@ -8,12 +8,13 @@ import pytest
 from flows import WOOD, merged
 
 import parsim
-from parsim.case import parse
-from parsim.comm import Comm
+from parsim.case.model import parse
+from parsim.domain.comm import Comm
 from parsim.errors import RunError
-from parsim.output.measure import Measure
+from parsim.observe.measure import Measure
 from parsim.output.series import TABLES
-from parsim.solver import Simulation, run
+from parsim.run.loop import run
+from parsim.run.simulation import Simulation
 
 FLOE = {"name": "floe", "shape": {"size": [0.08, 1.0, 0.04]}, "density": 900.0, "velocity": [3.0, 0.0, 0.0],
         "position": [0.3, 0.5, 0.1], "material": "wood"}

@@ -7,7 +7,7 @@ import random
 import pytest
 from strangers import NOBODY, NOGROUP, as_nobody, as_root
 
-from parsim import private
+from parsim.machine import private
 
 MODES = (0o700, 0o711, 0o750, 0o755, 0o770, 0o775, 0o777, 0o1777, 0o2775)
 CHAINS = 300

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from parsim import launch
-from parsim.output import progress
+from parsim.launch import mpirun as launch
+from parsim.run import progress
 
 
 @pytest.fixture

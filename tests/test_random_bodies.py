@@ -8,8 +8,8 @@ import pytest
 from flows import simulation, tank
 from test_validate import told
 
-from parsim.case_geometry import TurnedBox, overlap, rotation
-from parsim.solid.rotation import matrices
+from parsim.geometry.boxes import TurnedBox, overlap, rotation
+from parsim.geometry.rotation import matrices
 
 GRAVITY, SPACING, DENSITY = 9.81, 0.01, 1000.0
 SOLID = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}

@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 
 import parsim
-from parsim import check, launch, stop, variant
 from parsim.__main__ import main
+from parsim.case.load import load
 from parsim.errors import InputError
+from parsim.launch import mpirun as launch
+from parsim.launch import stop
+from parsim.machine import variant
 from parsim.output import checkpoint
-from parsim.resume import find
+from parsim.run.resume import find
 
 CASE = Path(__file__).with_name("survive.toml")
 WORDS = [str(CASE), "--until", "0.02", "--set", "output.frames=0.005"]
@@ -142,8 +145,8 @@ def test_a_row_of_a_table_is_the_case_that_is_gone_on_with(tmp_path, capsys):
     assert main(["resume", str(out), *words, "2"]) == 0
     table.write_text("water.viscosity,run.until\n1e-6,-1\n")
     with pytest.raises(InputError, match=f"{table}: row 1: run.until = -1"):
-        check.load(CASE, table=table, row=1)
-    assert check.load(CASE, ["run.until=3.0"], table=table, row=1).run.until == 3.0, "the command line comes last"
+        load(CASE, table=table, row=1)
+    assert load(CASE, ["run.until=3.0"], table=table, row=1).run.until == 3.0, "the command line comes last"
 
 
 def test_check_knows_how_many_ranks_a_case_can_use(capsys):

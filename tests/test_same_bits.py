@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import parsim
-from parsim import variant
 from parsim.__main__ import main
+from parsim.machine import variant
 
 HERE = Path(__file__).parent
 CASES = {"3d": HERE / "same_bits.toml", "2d": HERE / "same_bits_2d.toml"}
@@ -27,7 +27,7 @@ def one_rank(tmp_path_factory):
     """The output of each case on one rank."""
     folder = tmp_path_factory.mktemp("one")
     for name, case in CASES.items():
-        # a process of its own, as for every run: see parsim/warm.py
+        # a process of its own, as for every run: see parsim/run/warm.py
         subprocess.run([sys.executable, "-m", "parsim", "run", case, "-o", folder / name], check=True)
     return folder
 
@@ -40,14 +40,14 @@ def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monk
     assert main(["compare", str(one_rank / "3d"), str(tmp_path / "first")]) == 0, capsys.readouterr().out
 
 
-@pytest.mark.parametrize("text", ["import parsim.jit\n", "@implements(Gauss)\n"])
+@pytest.mark.parametrize("text", ["import parsim.machine.jit\n", "@implements(Gauss)\n"])
 @pytest.mark.parametrize("change", [
     lambda path: os.utime(path, (1, 1)), lambda path: path.write_text(path.read_text() + "#"),
 ])  # fmt: skip
 def test_changed_sources_get_a_cache_of_their_own(text, change, tmp_path, monkeypatch):
     (tmp_path / "kernels.py").write_text(text)
     monkeypatch.setenv(variant.NAME, "host")
-    monkeypatch.setattr(variant, "__file__", str(tmp_path / "variant.py"))
+    monkeypatch.setattr(variant, "__file__", str(tmp_path / "machine" / "variant.py"))
     before = variant.code()
     assert variant.code() == before
     change(tmp_path / "kernels.py")

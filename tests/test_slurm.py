@@ -12,8 +12,8 @@ import slurm
 
 import parsim
 from jobs import CASE, time_of
-from parsim import variant
 from parsim.__main__ import main
+from parsim.machine import variant
 from parsim.output import checkpoint
 
 ROOT = Path(__file__).parents[1]

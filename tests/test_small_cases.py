@@ -8,7 +8,7 @@ import pytest
 from flows import course, simulation, tank
 from test_validate import told
 
-from parsim.output.measure import Measure
+from parsim.observe.measure import Measure
 from parsim.output.series import TABLES
 
 GRAVITY = 9.81

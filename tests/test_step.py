@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from flows import fluid, merged, simulation, tank
 
-from parsim import guards
-from parsim.case import parse
-from parsim.estimate import time_step
-from parsim.fluid.wcmps import WCMPS
+from parsim.case.estimate import time_step
+from parsim.case.model import parse
+from parsim.fluid.wcmps.scheme import WCMPS
 from parsim.fluid.weights import WEIGHTS
+from parsim.run import guards
 
 OIL = tank(0.3, 0.2, 0.01, (0.1, 0.1))
 

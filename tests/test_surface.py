@@ -8,7 +8,7 @@ from test_sweeps import sweep
 from parsim.fluid import surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.weights import WEIGHTS
-from parsim.state import DETACHED, FLUID, INTERNAL, SURFACE, VICINITY, WALL, make_id
+from parsim.particles.state import DETACHED, FLUID, INTERNAL, SURFACE, VICINITY, WALL, make_id
 
 
 def found(domain, near, scheme):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from clouds import PLAIN, cloud, lattice, listed
 
-from parsim.fluid import kernels, updates
 from parsim.fluid.reference import Lattice
+from parsim.fluid.wcmps import sweeps, updates
 from parsim.fluid.weights import WEIGHTS
-from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
+from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY
 
 SIZE, RE = np.array([1.3, 0.9, 0.7]), 0.2
 
@@ -55,7 +55,7 @@ def row(p, near, i, part, weight):
 
 def test_seventh_roots_invert_the_state():
     y = np.array([0.0, 1e-6, 0.05, 0.7])
-    assert kernels.seventh_roots(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
+    assert sweeps.seventh_roots(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
 
 
 def test_the_half_step_moves_fluid_and_gives_it_the_pressure_of_the_state():
@@ -65,7 +65,7 @@ def test_the_half_step_moves_fluid_and_gives_it_the_pressure_of_the_state():
     state = np.array([INTERNAL, INTERNAL, VICINITY, SURFACE, DETACHED, INTERNAL], np.uint8)
     n, p = before.copy(), np.full(6, 9.0)
     x, y, z = (np.full(6, start) for start in (1.0, 2.0, 3.0))
-    kernels.predict(kind, state, velocity, 2 * velocity, -velocity, rate, 0.1, 1.0, 1000.0, x, y, z, n, p)
+    sweeps.predict(kind, state, velocity, 2 * velocity, -velocity, rate, 0.1, 1.0, 1000.0, x, y, z, n, p)
     moved = np.where(kind == 0, 0.1 * velocity, 0.0)
     assert np.stack([x, y, z]) == pytest.approx(np.stack([1.0 + moved, 2.0 + 2 * moved, 3.0 - moved]), rel=1e-14)
     assert n == pytest.approx([1.0, 1.01, 0.99, 1.01, 1.01, 1.01], rel=1e-14)
@@ -78,7 +78,7 @@ def test_momentum_sweep(mixed, weight):
     close, push, drag, hit, dt, own, whole = 0.1, 0.3, 0.7, 2.0, 0.05, 0.6, 50.0
     p.ax[near.boundary] = 3.0
     c, b = np.zeros(len(p)), np.zeros((3, len(p)))
-    kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
+    sweeps.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
                      p.isotropy, p.scale, WEIGHTS[weight].of_radius(RE), own, whole, close**2, push, drag, hit, dt,
                      p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, *b)
     struck, t = 0, corrections(p)
@@ -114,7 +114,7 @@ def test_continuity_sweep(mixed, weight):
     p.body[near.boundary[::2]] = 0
     n0, shares = np.quantile([filled(p, near, i, weight) for i in near.fluid[::7]], 0.5, method="lower") / 0.98, set()
     found = tuple(np.zeros((5, len(p))))
-    kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
+    sweeps.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, WEIGHTS[weight].of_radius(RE), n0, flow, spread, *h, crowd, close,
                        3.0, p.body, p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez, found)
     sums = np.stack([p.bx, p.by, p.bz], 1)
@@ -135,7 +135,7 @@ def test_continuity_sweep(mixed, weight):
         exact = np.eye(3) - 3.0 * m / np.trace(m)
         share = np.clip((filled(p, near, i, weight) / n0 - 0.97) / 0.02, 0.0, 1.0)
         shares.add(share)
-        exact *= min(share, kernels.LARGEST / np.sqrt((exact**2).sum()))
+        exact *= min(share, sweeps.LARGEST / np.sqrt((exact**2).sum()))
         five = exact[[0, 0, 0, 1, 2], [0, 1, 2, 2, 2]]
         assert [field[i] for field in found] == pytest.approx(five, rel=1e-9, abs=1e-12)
     assert {0.0, 1.0} < shares, "some at the surface, some inside, some between"
@@ -147,7 +147,7 @@ def test_boundary_pressure_sweep(mixed, weight):
     p.ax[near.boundary] = 0.5
     p.body[near.boundary[::2]] = 0
     pressure, sucked = p.p.copy(), [0, 0]
-    kernels.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, p.ax, p.ay,
+    sweeps.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, p.ax, p.ay,
                               p.az, *g, rho, WEIGHTS[weight].of_radius(RE), pressure)
     acceleration = np.stack([p.ax, p.ay, p.az], 1)
     for i in near.boundary:
@@ -165,12 +165,12 @@ def test_what_bodies_get_is_what_the_water_lost(mixed, weight):
     of_radius, close2, push, hit, dt = WEIGHTS[weight].of_radius(RE), 0.1**2, 0.3, 2.0, 0.05
     acceleration = np.random.default_rng(4).normal(size=(3, len(p)))
     back, a = np.zeros((near.boundary.size, 3)), np.stack([acceleration, acceleration])
-    kernels.reaction(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *acceleration,
+    sweeps.reaction(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *acceleration,
                      p.p, p.isotropy, p.scale, of_radius, 3.0, close2, push, hit, dt, back, np.empty_like(back),
                      np.empty((len(back), 6)))
     nothing = np.zeros((7, len(p)))
     for k, ends in enumerate((near.end, near.middle)):
-        kernels.momentum(near.fluid, near.start, near.middle, ends, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
+        sweeps.momentum(near.fluid, near.start, near.middle, ends, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
                          p.isotropy, p.scale, of_radius, 1.0, 50.0, close2, push, 0.7, hit, dt, *a[k], *nothing)
     lost = [math.fsum((a[0][axis] - a[1][axis])[near.fluid]) for axis in range(3)]
     got = [math.fsum(back[:, axis]) for axis in range(3)]
@@ -188,10 +188,10 @@ def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
     found = []
     for more in (0.0 * change, change):
         a, pressure = np.tile(more[:, None], len(p)), p.p.copy()
-        kernels.boundary_pressure(at, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, *a, *gravity, rho,
+        sweeps.boundary_pressure(at, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, *a, *gravity, rho,
                                   of_radius, pressure)
         out, lever, response = np.empty((at.size, 3)), np.empty((at.size, 3)), np.empty((at.size, 6))
-        kernels.reaction(at, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *a, pressure,
+        sweeps.reaction(at, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *a, pressure,
                          p.isotropy, p.scale, of_radius, rho, 0.1**2, push, hit, dt, out, lever, response)
         found.append((out, pressure[at], lever, response))
     (before, low, lever, response), (after, high, _, _) = found
@@ -205,7 +205,7 @@ def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
 def sweep(p, near, scheme):
     """Pair accelerations of all particles and their viscous sums with the constants of a lattice; concentrations."""
     c = np.zeros(len(p))
-    kernels.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
+    sweeps.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
                      p.isotropy, p.scale, scheme.weight, scheme.own, scheme.whole, 0.0,
                      scheme.dimensions / scheme.number, 1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz,
                      p.bx, p.by, p.bz)
@@ -242,7 +242,7 @@ def wave_error(count, weight):
     p.u[:] = 0.0
     sweep(p, near, scheme)
     p.u[:] = velocity
-    kernels.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
+    sweeps.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
                        p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 3 / scheme.number, 0.0, 0.0, 0.0, 0.0,
                        0.0, 0.0, 3.0, p.body, p.rate, *np.zeros((6, len(p))), tuple(np.zeros((5, len(p)))))
     exact = k * np.cos(k * p.x[near.fluid])
@@ -270,11 +270,11 @@ def test_a_strained_lattice_under_even_pressure_has_no_shear_stress(weight, stra
         d = (np.eye(3) + strain) @ (0.1 * (np.array(offset) - 4.0))
         if 0.0 < (r := np.linalg.norm(d)) < scheme.radius:
             m += PLAIN[weight](np.array([r]), scheme.radius)[0] / r**2 * np.outer(d, d)
-    xx, xy, xz, yz, zz = kernels.isotropic(m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2], 3.0, 1.0)
+    xx, xy, xz, yz, zz = sweeps.isotropic(m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2], 3.0, 1.0)
     corrected = (np.eye(3) + np.array([[xx, xy, xz], [xy, -xx - zz, yz], [xz, yz, zz]])) @ m
 
     def uneven(matrix):
         return np.linalg.norm(matrix / np.trace(matrix) - np.eye(3) / 3.0)
 
-    assert uneven(corrected) < 3.0 * uneven(m) ** 2 or uneven(m) * 3.0 > kernels.LARGEST
+    assert uneven(corrected) < 3.0 * uneven(m) ** 2 or uneven(m) * 3.0 > sweeps.LARGEST
     assert uneven(corrected) < uneven(m)

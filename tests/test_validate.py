@@ -10,10 +10,10 @@ import pytest
 
 import parsim
 from parsim.__main__ import main
-from parsim.case import load
-from parsim.comm import Comm
-from parsim.solver import Simulation
-from parsim.state import WALL
+from parsim.case.model import load
+from parsim.domain.comm import Comm
+from parsim.particles.state import WALL
+from parsim.run.simulation import Simulation
 
 CASES = Path(__file__).parent.parent / "cases"
 pytestmark = pytest.mark.validate

@@ -12,9 +12,10 @@ import pytest
 from strangers import NOBODY, as_root, give_away
 
 import parsim
-from parsim import probe, variant, warm
 from parsim.__main__ import main
 from parsim.errors import InputError
+from parsim.machine import variant
+from parsim.run import probe, warm
 
 CASE = Path(__file__).parent / "same_bits.toml"
 
@@ -85,7 +86,7 @@ def test_every_possible_variant_can_be_timed():
 
 
 def test_numba_is_told_the_variant(tmp_path):
-    script = ("import os; from parsim import variant; variant.apply(); from numba.core import config; "
+    script = ("import os; from parsim.machine import variant; variant.apply(); from numba.core import config; "
               "print(config.CPU_NAME, config.CPU_FEATURES)")
     told = {name: subprocess.run([sys.executable, "-c", script], env=os.environ | {variant.NAME: name}, check=True,
                                  capture_output=True, text=True).stdout for name in variant.possible()}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from example_cases import ROOT
 
-from parsim.case import parse
+from parsim.case.model import parse
 from parsim.errors import InputError
 
 CASES = sorted(path for path in (ROOT / "cases").rglob("*.toml") if path.name[0] != "_")

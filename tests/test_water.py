@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from parsim.case import parse
-from parsim.comm import Comm
-from parsim.diagnostics import energies
-from parsim.setup import water
-from parsim.shapes import Lattice, outside_box, taken_by_bodies
+from parsim.case.model import parse
+from parsim.domain.comm import Comm
+from parsim.observe.water import energies
+from parsim.particles.lattice import Lattice
+from parsim.particles.state import GATE_DOWN, GATE_UP
+from parsim.run.fill import outside_box, taken_by_bodies, water
+from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
-from parsim.solver import Simulation
-from parsim.state import GATE_DOWN, GATE_UP
 
 TANK = {"dimensions": 2, "spacing": 0.01, "box": {"max": [0.2, 1.0, 0.2]}, "run": {"until": 1.0},
         "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.1]}]},

@@ -9,7 +9,7 @@ from clouds import PLAIN
 from parsim.fluid.reference import Lattice
 from parsim.fluid.weights import WEIGHTS
 from parsim.fluid.weights.choice import weight_at
-from parsim.jit import kernel
+from parsim.machine.jit import kernel
 
 
 @kernel

@@ -10,8 +10,9 @@ import tempfile
 import time
 from importlib.metadata import version
 
-from parsim import launch, variant
 from parsim.bench import cases
+from parsim.launch import mpirun
+from parsim.machine import variant
 
 SUPPORTS = (3.1, 2.1)
 SIZES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000)
@@ -29,8 +30,8 @@ class BenchError(Exception):
 def measured(order, ranks=1, threads=1, environment=None):
     """Figures of one order of `parsim.bench.worker`, and `launched`, the time at which its job was started, s."""
     words = [sys.executable, "-P", "-m", "parsim.bench.worker", json.dumps(order)]
-    line = words if ranks == 1 else launch.command(ranks, words)
-    variables = (environment or launch.environment()) | {"NUMBA_NUM_THREADS": str(threads)}
+    line = words if ranks == 1 else mpirun.command(ranks, words)
+    variables = (environment or mpirun.environment()) | {"NUMBA_NUM_THREADS": str(threads)}
     began = time.time()
     ran = subprocess.run(line, env=variables, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if ran.returncode:
@@ -67,7 +68,7 @@ def start_up():
     """Seconds from the start of a job of two ranks to the end of its first step: with empty caches, and with full."""
     order = {"case": cases.floating_blocks(0.005, 3.1), "warm": 0, "steps": 1}
     with tempfile.TemporaryDirectory() as empty:
-        bare = {key: text for key, text in launch.environment().items() if key not in ("NUMBA_CACHE_DIR", variant.NAME)}
+        bare = {key: text for key, text in mpirun.environment().items() if key not in ("NUMBA_CACHE_DIR", variant.NAME)}
         cold = measured(order, 2, environment=bare | {"XDG_CACHE_HOME": empty})
     warm = [measured(order, 2) for _ in range(_TURNS + 1)][1:]  # the first one may have had to compile here too
     return _waited(cold), statistics.median(_waited(one) for one in warm)
@@ -120,7 +121,7 @@ def _size(count, tell):
 
 
 def _machine():
-    return {"host": platform.node(), "processor": _model(), "cores": launch.cores(), "memory_bytes": _memory(),
+    return {"host": platform.node(), "processor": _model(), "cores": mpirun.cores(), "memory_bytes": _memory(),
             "kernel": variant.chosen(), "python": platform.python_version(),
             **{name: version(name) for name in ("parsim", "numba", "numpy", "mpi4py")}}
 

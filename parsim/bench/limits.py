@@ -4,9 +4,9 @@ import time
 
 import numpy as np
 
-from parsim.fluid import kernels
-from parsim.jit import prange, rows
-from parsim.state import FLUID
+from parsim.fluid.wcmps import sweeps as kernels
+from parsim.machine.jit import prange, rows
+from parsim.particles.state import FLUID
 
 
 @rows

@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from parsim import launch
 from parsim.bench.account import measured
+from parsim.launch import mpirun
 
 RANKS = (1, 2, 4, 8)
 TROUGHS = ((96, 12, 12), (96, 24, 16), (192, 16, 16))  # particles along x, y, z of the fitted runs
@@ -28,7 +28,7 @@ _STEPS, _EFFICIENT = 40, 0.7
 
 def fitted(tell):
     """Measure and fit; returns coefficients, the runs they come from with the model's time, and predictions."""
-    link = measured({"case": trough(*TROUGHS[0]), "messages": True}, min(2, launch.cores()))["messages"]
+    link = measured({"case": trough(*TROUGHS[0]), "messages": True}, min(2, mpirun.cores()))["messages"]
     runs = []
     for size in TROUGHS:
         for ranks in RANKS:
@@ -36,9 +36,9 @@ def fitted(tell):
             run = measured({"case": trough(*size), "warm": 5, "steps": _STEPS}, ranks)
             runs.append({"ranks": ranks, "active": run["active"], "halo": run["halo"],
                          "step_s": run["wall_s"] / run["steps"]})
-    costs = fit(runs, launch.cores())
+    costs = fit(runs, mpirun.cores())
     for run in runs:
-        run["model_s"] = float(_terms(run, launch.cores()) @ [costs["sweep"], costs["halo"], costs["switch"]])
+        run["model_s"] = float(_terms(run, mpirun.cores()) @ [costs["sweep"], costs["halo"], costs["switch"]])
     return {"costs": costs, "link": link, "runs": runs,
             "predictions": [predict(shape, count, costs) for shape in SHAPES for count in COUNTS]}
 

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from parsim.case import parse
-from parsim.comm import Comm
-from parsim.warm import exercise, prepare
+from parsim.case.model import parse
+from parsim.domain.comm import Comm
+from parsim.run.warm import exercise, prepare
 
 _WARM = 5  # steps
 _CALLS = 7  # of a single sweep; the fastest counts
@@ -29,7 +29,7 @@ def measure(order):
     if order.get("messages"):
         return {"messages": _messages(comm)}
     prepare()
-    from parsim.solver import Simulation
+    from parsim.run.simulation import Simulation
 
     if order.get("warm", _WARM):
         exercise()  # machine code is in memory before the particles are
@@ -48,7 +48,7 @@ def measure(order):
 
 def _recorder(case, comm, simulation, folder):
     from parsim.output.folder import Folder
-    from parsim.output.recorder import Recorder
+    from parsim.run.recorder import Recorder
 
     place = Folder(Path(folder) / "out", comm)
     place.make(case, "bench", False)

@@ -1,7 +1,7 @@
 """A plate across the whole box that rises at constant speed, thinner than the support of the water.
 
 The waters on its two sides must not see each other through it: each side meets its own samples, up to a whole support
-deep, and pairs that the plate hides are taken out of the lists (`parsim.neighbours`).
+deep, and pairs that the plate hides are taken out of the lists (`parsim.particles.neighbours`).
 """
 
 import math
@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from parsim.boundary.wall import lattice_axis, samples_of
-from parsim.state import GATE_DOWN, GATE_UP, Particles
+from parsim.particles.state import GATE_DOWN, GATE_UP, Particles
 
 
 class Gate:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from parsim.state import WALL, Particles, make_id
+from parsim.particles.state import WALL, Particles, make_id
 
 _SIDES = (("x_min", "x_max"), ("y_min", "y_max"), ("z_min", "z_max"))
 

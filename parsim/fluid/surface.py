@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
-from parsim.jit import kernel, prange, rows
-from parsim.state import DETACHED, INTERNAL, SURFACE, VICINITY
+from parsim.machine.jit import kernel, prange, rows
+from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY
 
 _BELOW2 = 0.92  # squared cosine of the widest angle between the way to a bed and the plumb line
 _SQUEEZED = 2.5  # times the pull in deep water

@@ -16,7 +16,7 @@ import numpy as np
 
 from parsim.errors import InputError
 from parsim.output.frames import replacing
-from parsim.state import OF_WATER, WATER_BYTES, Particles
+from parsim.particles.state import OF_WATER, WATER_BYTES, Particles
 
 FOLDER, SUFFIX = "checkpoints", ".h5"
 _KIND = b"parsim checkpoint, format 2\n"

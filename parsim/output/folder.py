@@ -5,8 +5,8 @@ import shutil
 import sys
 from pathlib import Path
 
+from parsim.case.estimate import disk, estimate
 from parsim.errors import InputError, WriteError
-from parsim.estimate import disk, estimate
 from parsim.output import checkpoint, lock
 from parsim.output.frames import write_text
 from parsim.output.reader import MARK, is_output

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from parsim.jit import kernel
-from parsim.solid.rotation import matrix, scaled
+from parsim.geometry.rotation import matrix, scaled
+from parsim.machine.jit import kernel
 
 
 @kernel

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from parsim.jit import kernel
-from parsim.solid.rotation import free_turn, from_angles, matrices, matrix, scaled
+from parsim.geometry.rotation import free_turn, from_angles, matrices, matrix, scaled
+from parsim.machine.jit import kernel
 
 _KEPT = ("position", "quaternion", "velocity", "spin", "acceleration", "angular_acceleration", "water_load",
          "contact_load", "gravity_load", "film", "left")
@@ -23,7 +23,7 @@ class Bodies:
     m/s; spin (nb, 3), global axes, rad/s.
     Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
     force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin, and how well
-    each face is fed with it, 0 to 1 (`parsim.films`). left (nb,): time, s, at which it was taken out, inf before.
+    each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out, inf before.
     """
 
     def __init__(self, half, mass, position, quaternion=None, velocity=0.0, spin=0.0, *, names=None, material=0,

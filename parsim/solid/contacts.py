@@ -7,8 +7,7 @@ import numpy as np
 from parsim.boundary.gate import Gate
 from parsim.boundary.wall import ends_of_walls, walled_sides
 from parsim.solid import table
-from parsim.solid.elements import elements_of
-from parsim.solid.hertz import pair_tables
+from parsim.solid.laws.foundation import pair_tables
 from parsim.solid.motion import begin, finish
 from parsim.solid.search import (
     ELEMENT,
@@ -23,6 +22,7 @@ from parsim.solid.search import (
     room_for_slots,
     sort_pairs,
 )
+from parsim.solid.shapes.box import elements_of
 from parsim.solid.substeps import advance, elastic
 from parsim.solid.tanks import LOST, recall_tanks, room_for_tanks
 

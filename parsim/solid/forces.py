@@ -2,10 +2,10 @@
 
 import math
 
-from parsim.jit import kernel
-from parsim.solid.hertz import TANGENTIAL, friction_force, normal_force
+from parsim.geometry.rotation import to_body
+from parsim.machine.jit import kernel
+from parsim.solid.laws.foundation import TANGENTIAL, friction_force, normal_force
 from parsim.solid.motion import clear_loads, speed_of
-from parsim.solid.rotation import to_body
 from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at

@@ -6,8 +6,8 @@ step of the water at once.
 
 import math
 
-from parsim.jit import kernel
-from parsim.solid.rotation import free_turn, matrix, scaled
+from parsim.geometry.rotation import free_turn, matrix, scaled
+from parsim.machine.jit import kernel
 from parsim.solid.table import (
     ALONE,
     GIVEN,

@@ -15,9 +15,9 @@ import math
 
 import numpy as np
 
-from parsim.jit import kernel
+from parsim.geometry.rotation import to_body, to_global
+from parsim.machine.jit import kernel
 from parsim.solid.motion import bound_of_speed
-from parsim.solid.rotation import to_body, to_global
 from parsim.solid.separation import best_feature, between, ramp_of, reach_along
 from parsim.solid.table import ALONE, HALF, HELD, INVOLVED, POSITION, ROLE, TURN, pose_of
 

@@ -7,7 +7,7 @@ edges; the one along which they are farthest apart, or overlap least. `m`: table
 
 import math
 
-from parsim.jit import kernel
+from parsim.machine.jit import kernel
 from parsim.solid.table import CELL, HALF, POSITION, TURN, three
 
 _LATERAL = 0.1  # cosine below which a face lies along the normal and does not bound the depth

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from parsim.jit import kernel
+from parsim.geometry.rotation import scaled
+from parsim.machine.jit import kernel
 from parsim.solid.forces import coefficients, compliance, free_time, press, relative_motion, velocity_at
-from parsim.solid.hertz import TANGENTIAL
+from parsim.solid.laws.foundation import TANGENTIAL
 from parsim.solid.motion import alone, drift_involved, kick_involved
-from parsim.solid.rotation import scaled
 from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, A, B
 from parsim.solid.separation import overlap_share, ramp_of
 from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at

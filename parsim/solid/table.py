@@ -3,7 +3,7 @@
 One array instead of many: a kernel then passes a table of bodies on to the next at no cost. Columns by name:
 """
 
-from parsim.jit import kernel
+from parsim.machine.jit import kernel
 
 POSITION, QUATERNION, VELOCITY = 0, 3, 7
 MOMENTUM, SPIN = 10, 13  # angular, both in global axes

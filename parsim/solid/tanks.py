@@ -18,9 +18,9 @@ import math
 
 import numpy as np
 
-from parsim.jit import kernel
+from parsim.geometry.rotation import scaled
+from parsim.machine.jit import kernel
 from parsim.solid.motion import foresee
-from parsim.solid.rotation import scaled
 from parsim.solid.search import FIRST, KEY, LAST, STRETCH, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, three, turn_at

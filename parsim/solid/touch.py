@@ -1,7 +1,7 @@
 """Geometry of the pairs that may touch: depth, area and place of each of their elements."""
 
-from parsim.jit import kernel
-from parsim.solid.rotation import to_body, to_global
+from parsim.geometry.rotation import to_body, to_global
+from parsim.machine.jit import kernel
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, INDEX, LAST, MIDDLE, POINT, A, B, above
 from parsim.solid.separation import depth_in_box, edge_crossing, overlap_share, ramp_of, separation
 from parsim.solid.table import HALF, pose_of, three

@@ -4,7 +4,7 @@ A weight is one file: a named tuple of its parameters, a function marked with `i
 no distance. It is zero at and beyond the radius; what divides is done once, in the parameters.
 """
 
-from parsim.jit import FAST
+from parsim.machine.jit import FAST
 
 from numba import types  # isort: skip (the settings of numba must come first)
 from numba.extending import overload

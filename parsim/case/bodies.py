@@ -1,0 +1,216 @@
+"""Checks of a case's bodies, materials, gate and gauges. Each takes a completed case and returns messages."""
+
+import math
+
+import numpy as np
+
+from parsim.boundary.wall import walled_sides
+from parsim.case.fill import TOUCH, water_at
+from parsim.errors import nearest, suggestion
+from parsim.geometry import boxes as geometry
+
+GAUGE_REACH = 1.5  # spacings: a gauge reads the highest water within this distance
+PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
+
+
+def thinnest(case, body):
+    """Length of the shortest edge of a body, m."""
+    return min(body.shape.size[axis] for axis in case.axes)
+
+
+def particles_across(case, body):
+    """Number of particles across the thinnest side of a body."""
+    return round(thinnest(case, body) / case.spacing)
+
+
+def placed(case):
+    """The bodies that have a place (a body that cannot float has none)."""
+    return [body for body in case.bodies if body.position[2] != "float"]
+
+
+def names(case):
+    """Names are unique."""
+    faults = []
+    for key, entries in (("bodies", case.bodies), ("output.gauges", case.output.gauges)):
+        given = [entry.name for entry in entries]
+        doubled = sorted({name for name in given if given.count(name) > 1}) if len(set(given)) < len(given) else []
+        faults += [f'{key}: name = "{name}" is given more than once; names must differ' for name in doubled]
+    return faults
+
+
+def materials(case):
+    """Every material that is named exists."""
+    uses = [(f"bodies.{body.name}.material", body.material) for body in case.bodies]
+    if case.wall_material is not None:
+        uses.append(("wall_material", case.wall_material))
+    return [f'{key} = "{name}": {_unknown(name, case.materials)}' for key, name in uses if name not in case.materials]
+
+
+def _unknown(name, known):
+    allowed = ", ".join(known) or "none, [materials.NAME] is missing"
+    return f"no such material; allowed: {allowed}{suggestion(nearest(name, known))}"
+
+
+def bodies(case):
+    """Each body by itself: mass, size, place, and in 2D what a plane allows."""
+    return [f"bodies.{body.name}.{text}" for body in case.bodies for text in _body(case, body)]
+
+
+def _body(case, body):
+    if (body.density is None) == (body.mass is None):
+        given = "none is" if body.mass is None else f"density = {body.density!r} and mass = {body.mass!r} are"
+        yield f"density, mass: exactly one must be given, {given}"
+    if particles_across(case, body) < 2:
+        yield (
+            f"shape.size = {list(body.shape.size)}: thinner than two particles at spacing = {case.spacing!r}; "
+            f"its thinnest side {thinnest(case, body)!r} m must be at least 1.5 spacings"
+        )
+    if body.fixed and any((*body.velocity, *body.spin)):
+        yield f"fixed = true: velocity = {list(body.velocity)} and spin = {list(body.spin)} must then be zero"
+    if case.dimensions == 2:
+        yield from _planar(body)
+    if body.position[2] != "float":
+        yield from _outside(case, body)
+
+
+def _planar(body):
+    if body.shape.size[1] != 1.0:
+        yield f"shape.size = {list(body.shape.size)}: y must be 1 in a 2D case"
+    if body.position[1] != 0.5:
+        yield f"position = {list(body.position)}: y must be 0.5 in a 2D case"
+    if body.velocity[1]:
+        yield f"velocity = {list(body.velocity)}: y must be 0 in a 2D case"
+    for key, value in (("angles", body.angles), ("spin", body.spin)):
+        if value[0] or value[2]:
+            yield f"{key} = {list(value)}: x and z must be 0 in a 2D case; bodies turn about y only"
+
+
+def _outside(case, body):
+    corners = geometry.of_body(body).corners
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    for axis in case.axes:
+        name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
+        if getattr(case.box.faces, f"{name}_min") == "periodic":
+            low[axis] = high[axis] = body.position[axis]
+        if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
+            yield (
+                f"position = {list(body.position)}: outside the box, reaches from {name} = {low[axis]:.6g} to "
+                f"{high[axis]:.6g}; allowed {least!r} to {most!r}"
+            )
+
+
+def speeds(case):
+    """Nothing solid starts or is driven as fast as the sound of the model."""
+    if case.speed <= 0.0:
+        return []
+    found = [(f"bodies.{body.name}.velocity, spin", _fastest(body)) for body in case.bodies]
+    if case.gate:
+        found.append(("gate.speed", case.gate.speed))
+    return [f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
+            "which is water.sound times water.speed" for key, speed in found if not speed < case.sound_speed]
+
+
+def _fastest(body):
+    """Bound of the speed of any point of a body at the start, m/s."""
+    return math.hypot(*body.velocity) + math.hypot(*body.spin) * 0.5 * math.hypot(*body.shape.size)
+
+
+def overlaps(case):
+    """No body is inside another or inside the gate."""
+    present = placed(case)
+    boxes = [geometry.of_body(body) for body in present]
+    period = [_period(case, axis) for axis in range(3)]
+    faults = []
+    for i, j, shift in geometry.near_pairs(boxes, period):
+        depth = geometry.overlap(boxes[i], boxes[j], shift)
+        if depth > TOUCH:
+            faults.append(f"bodies.{present[j].name}: overlaps bodies.{present[i].name} by {depth:.3g} m")
+    for body, box in zip(present, boxes, strict=True) if case.gate else ():
+        depth = geometry.overlap(box, _gate_box(case))
+        if depth > TOUCH:
+            faults.append(
+                f"bodies.{body.name}: is in the gate, x = {case.gate.min_x!r} to {case.gate.max_x!r}, by {depth:.3g} m"
+            )
+    return faults
+
+
+def _period(case, axis):
+    name = "xyz"[axis]
+    return case.box.size[axis] if getattr(case.box.faces, f"{name}_min") == "periodic" else 0.0
+
+
+def _gate_box(case):
+    """Where the gate is at the start; it reaches above the box."""
+    gate, low, high = case.gate, case.box.min, case.box.max
+    bottom = gate.bottom + gate.speed * max(0.0, case.start - gate.opens)
+    return geometry.upright((gate.min_x, low[1], bottom), (gate.max_x, high[1], max(high[2], bottom) + 1.0))
+
+
+def gate(case):
+    """The gate is a plate within the tank, between walls."""
+    if case.gate is None:
+        return []
+    plate, low, high, faults = case.gate, case.box.min, case.box.max, []
+    if not plate.min_x < plate.max_x:
+        faults.append(f"gate.max_x = {plate.max_x!r}: must be greater than gate.min_x = {plate.min_x!r}")
+    for key, value, axis in (("min_x", plate.min_x, 0), ("max_x", plate.max_x, 0), ("bottom", plate.bottom, 2)):
+        if not low[axis] <= value <= high[axis]:
+            faults.append(f"gate.{key} = {value!r}: outside the tank; must be {low[axis]!r} to {high[axis]!r}")
+    needed = ("x_min", "x_max", "z_min") + (("y_min", "y_max") if case.dimensions == 3 else ())
+    wrong = [f'{face} = "{kind}"' for face in needed if (kind := getattr(case.box.faces, face)) != "wall"]
+    if wrong:
+        faults.append(f'gate: needs walls around it, but box.faces has {", ".join(wrong)}; must be "wall"')
+    return faults
+
+
+def gauges(case):
+    """Gauges stand in the box."""
+    return [
+        f"output.gauges.{gauge.name}.{'xyz'[axis]} = {value!r}: outside the box; must be "
+        f"{case.box.min[axis]!r} to {case.box.max[axis]!r}"
+        for gauge in case.output.gauges
+        for axis, value in enumerate((gauge.x, gauge.y))
+        if not case.box.min[axis] <= value <= case.box.max[axis]
+    ]
+
+
+def narrow_passages(case):
+    """(name, what is beside it, gap, m) of the passages of less than PASSAGE spacings beside bodies that are fixed."""
+    fixed, widest = [body for body in placed(case) if body.fixed], PASSAGE * case.spacing
+    boxes = [geometry.of_body(body) for body in fixed]
+    grown = [geometry.TurnedBox(box.centre, box.half + 0.5 * widest, box.axes) for box in boxes]
+    gaps = [(i, f"box.faces.{'xyz'[axis]}_{'min' if sign < 0 else 'max'}",
+             sign * (level - box.centre[axis]) - box.reach[axis])
+            for i, box in enumerate(boxes) for axis, sign, level in walled_sides(case)]  # fmt: skip
+    gaps += [(i, f"bodies.{fixed[j].name}", -geometry.overlap(boxes[i], boxes[j], shift))
+             for i, j, shift in geometry.near_pairs(grown, [_period(case, axis) for axis in range(3)])]
+    return [(fixed[i].name, other, gap) for i, other, gap in gaps if TOUCH < gap < widest - TOUCH]
+
+
+def blocked_gauges(case):
+    """Names of the gauges that bodies, walls and gate leave no room to read the water level at the start."""
+    solids = [geometry.of_body(body) for body in placed(case)] + ([_gate_box(case)] if case.gate else [])
+    return [gauge.name for gauge in case.output.gauges if not _readable(case, gauge, solids)]
+
+
+def _readable(case, gauge, solids):
+    """Whether a particle at the level could stand within the reach of a gauge, or there is no water at it."""
+    water = water_at(case.water.fill, gauge.x, gauge.y)
+    if water is None:
+        return True
+    # particles stand half a spacing from what is solid
+    half, steps = 0.5 * case.spacing, case.spacing * np.linspace(-GAUGE_REACH, GAUGE_REACH, 61)
+    x, y = np.meshgrid(gauge.x + steps, gauge.y + steps if case.dimensions == 3 else gauge.y)
+    within = (x - gauge.x) ** 2 + (y - gauge.y) ** 2 <= (GAUGE_REACH * case.spacing) ** 2
+    places = np.stack([x[within], y[within], np.full(within.sum(), water[1])], axis=1)
+    free = np.ones(len(places), bool)
+    for axis in case.axes[:-1]:
+        for side, place, sign in (("min", case.box.min[axis], 1.0), ("max", case.box.max[axis], -1.0)):
+            wall = getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall"
+            free &= sign * (places[:, axis] - place) >= (half if wall else 0.0) - TOUCH
+    spot = np.array([gauge.x, gauge.y, water[1]])
+    for solid in solids:
+        if np.any(np.abs(solid.centre - spot) > solid.reach + 2.0 * GAUGE_REACH * case.spacing):
+            continue
+        free &= geometry.clearance(solid, places) >= half - TOUCH
+    return bool(free.any())

@@ -1,0 +1,157 @@
+"""Checks of a case beyond the types of its keys, and the completion of what depends on several keys."""
+
+import math
+from fractions import Fraction
+
+from parsim.case import bodies
+from parsim.case import fill as fills
+from parsim.errors import InputError
+
+
+def checked(case, messages):
+    """`case` completed. Raises InputError with `messages` and everything else that is wrong."""
+    case, faults = _completed(case)
+    of_bodies = (bodies.names, bodies.materials, bodies.bodies, bodies.speeds, bodies.overlaps, bodies.gate,
+                 bodies.gauges)
+    for check in (_spacing, _box, _faces, fills.faults, _speed, *of_bodies):
+        faults += check(case)
+    if messages or faults:
+        raise InputError([*messages, *faults])
+    return case
+
+
+def doubts(case):
+    """What is allowed but doubtful: a list of messages, one for all bodies of one kind."""
+    thin = {}
+    for body in case.bodies:
+        if (across := bodies.particles_across(case, body)) < 4:
+            thin.setdefault((across, bodies.thinnest(case, body)), []).append(body.name)
+    told = [
+        f"bodies.{names[0]}{f' and {len(names) - 1} more' if names[1:] else ''}: {across} particles across the "
+        f"thinnest side, {side!r} m; four or more give usable loads"
+        for (across, side), names in thin.items()
+    ]
+    return told + [
+        f"output.gauges.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
+        f"{case.spacing!r} m; until they move it reads the water under them"
+        for name in bodies.blocked_gauges(case)
+    ] + [
+        f"bodies.{name}: leaves a passage of {gap:.3g} m, {gap / case.spacing:.2g} spacings, to {other}; water passes "
+        f"as it should through {bodies.PASSAGE:g} spacings or more"
+        for name, other, gap in bodies.narrow_passages(case)
+    ] + _support(case) + fills.doubts(case)
+
+
+def _support(case):
+    """Doubts about a support with which water at rest does not stay so (2D, ten rows, 1 s)."""
+    if case.water.support >= 2.6:
+        return []
+    return [
+        f"water.support = {case.water.support!r}: too small: water at rest boils at 2.1, and at 2.3 to 2.5 its "
+        "pressure scatters by 0.1 to 1 % where that is 0.01 % at 3.1; 2.7 or more is quiet"
+    ]
+
+
+def _completed(case):
+    """(`case` with the values filled in that depend on other keys, messages)."""
+    floated, faults = [], []
+    for body in case.bodies:
+        try:
+            floated.append(_floated(case, body) if body.position[2] == "float" else body)
+        except ValueError as error:
+            floated.append(body)
+            faults.append(f'bodies.{body.name}.position = "float" as z: {error}')
+    middle = (case.box.min[1] + case.box.max[1]) / 2
+    gauges = tuple(g.model_copy(update={"y": middle}) if g.y is None else g for g in case.output.gauges)
+    update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"gauges": gauges})}
+    if case.gate and case.gate.bottom is None:
+        update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})
+    if case.wall_material is None:
+        update["wall_material"] = next(iter(case.materials), None)
+    return case.model_copy(update=update), faults
+
+
+def _floated(case, body):
+    """`body` at the height where it floats level, by Archimedes."""
+    x, y, _ = body.position
+    water = fills.water_at(case.water.fill, x, y)
+    if water is None:
+        raise ValueError(f"no fill under its centre x = {x!r}, y = {y!r}")
+    if body.angles[0] or body.angles[1]:
+        raise ValueError(f"its faces must be level, but angles = {list(body.angles)}; give z as a number")
+    if (body.density is None) == (body.mass is None):
+        raise ValueError("needs its density or its mass")
+    (bottom, level), thickness = water, body.shape.size[2]
+    draught = thickness * case.density_of(body) / case.water.density
+    if draught >= thickness:
+        raise ValueError(f"density {case.density_of(body):.6g} kg/m3 does not float; must be below that of the water")
+    if draught > level - bottom:
+        raise ValueError(f"draught {draught:.6g} m is more than the depth of water there, {level - bottom:.6g} m")
+    return body.model_copy(update={"position": (x, y, level - draught + thickness / 2)})
+
+
+def _spacing(case):
+    """The spacing divides every edge of the box along which things move."""
+    edges = {"xyz"[axis]: case.box.size[axis] for axis in case.axes if case.box.size[axis] > 0}
+    wrong = [name for name, edge in edges.items() if not _divides(case.spacing, edge)]
+    if not wrong:
+        return []
+    listed = ", ".join(f"{name} = {edges[name]:.10g}" for name in wrong)
+    return [f"spacing = {case.spacing!r}: does not divide box {listed} m; {_nearest_spacings(case)}"]
+
+
+def _divides(spacing, edge):
+    count = edge / spacing
+    return count > 0.5 and abs(count - round(count)) <= 1e-6 * count
+
+
+def _nearest_spacings(case):
+    """The nearest spacings that divide every edge, in words."""
+    low, high = case.box.min, case.box.max
+    edges = [Fraction(repr(high[axis])) - Fraction(repr(low[axis])) for axis in case.axes]
+    common = Fraction(math.gcd(*(_over(edge, edges) for edge in edges)), _denominator(edges))
+    count = common / Fraction(repr(case.spacing))
+    if count < Fraction(1, 10):
+        return "the edges of the box have no usable common measure: change an edge"
+    counts = sorted({max(1, math.ceil(count)), max(1, math.floor(count))}, reverse=True)
+    return "nearest spacings that do: " + ", ".join(repr(float(common / k)) for k in counts)
+
+
+def _denominator(edges):
+    return math.lcm(*(edge.denominator for edge in edges))
+
+
+def _over(edge, edges):
+    return abs(int(edge * _denominator(edges)))
+
+
+def _box(case):
+    low, high = case.box.min, case.box.max
+    faults = [
+        f"box.max = {list(high)}: {name} must be greater than that of box.min = {list(low)}"
+        for axis, name in enumerate("xyz")
+        if not low[axis] < high[axis]
+    ]
+    if case.dimensions == 2 and (low[1], high[1]) != (0.0, 1.0):
+        faults.append(f"box.min, box.max: y = {low[1]!r} to {high[1]!r}: must be 0 to 1 in a 2D case")
+    return faults
+
+
+def _faces(case):
+    faces, faults = case.box.faces, []
+    for name in "xyz":
+        low, high = getattr(faces, f"{name}_min"), getattr(faces, f"{name}_max")
+        if (low == "periodic") != (high == "periodic"):
+            faults.append(
+                f'box.faces.{name}_min = "{low}", box.faces.{name}_max = "{high}": both or none must be "periodic"'
+            )
+    if case.dimensions == 2 and (faces.y_min, faces.y_max) != ("wall", "wall"):
+        faults.append(f'box.faces.y_min, y_max = "{faces.y_min}", "{faces.y_max}": a 2D case has none; leave them out')
+    return faults
+
+
+def _speed(case):
+    if case.water.speed is None and case.speed <= 0:
+        lacking = "gravity" if case.water.fill else "fill"
+        return [f"water.speed: missing; the largest expected speed, m/s, is required in a case without {lacking}"]
+    return []

@@ -1,0 +1,288 @@
+"""A case: everything one run is made from, typed, checked and frozen.
+
+`load` reads a TOML file; what it returns is complete: every default is filled in, and `Case.to_toml` writes a file
+that loads back equal. SI units; angles in degrees; x downstream, y across, z up. A 2D case is the x-z plane and one
+metre wide: its box, fills and bodies reach from y = 0 to y = 1.
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, Strict
+
+from parsim.case.checks import checked, doubts
+from parsim.case.file import read, replaced, written
+from parsim.case.messages import validated
+
+Real = Annotated[float, Strict()]
+Whole = Annotated[int, Strict()]
+Number = Annotated[Real, Field(ge=-1e9, le=1e9)]
+Positive = Annotated[Real, Field(gt=0, le=1e15)]
+NotNegative = Annotated[Real, Field(ge=0, le=1e15)]
+Share = Annotated[Real, Field(ge=0, le=1)]
+Count = Annotated[Whole, Field(ge=1, le=10**9)]
+Switch = Annotated[bool, Strict()]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,63}$")]
+Vector = tuple[Number, Number, Number]
+Moderate = Annotated[Real, Field(ge=1e-9, le=1e9)]
+Size = tuple[Moderate, Moderate, Moderate]
+Place = tuple[Number, Number, Number | Literal["float"]]
+Face = Literal["wall", "open", "periodic"]
+
+
+class Table(BaseModel):
+    """A table of the case file: frozen, unknown keys refused, no silent conversion of types."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Faces(Table):
+    """What each side of the box is. A 2D case has no y faces."""
+
+    x_min: Face = Field("wall", description="upstream side")
+    x_max: Face = Field("wall", description="downstream side")
+    y_min: Face = Field("wall", description="side at small y; 3D only")
+    y_max: Face = Field("wall", description="side at large y; 3D only")
+    z_min: Face = Field("wall", description="floor")
+    z_max: Face = Field("open", description="top")
+
+
+class Box(Table):
+    """The box that holds everything; its faces are where walls stand."""
+
+    min: Vector = Field((0.0, 0.0, 0.0), description="lowest corner, m; in 2D y = 0")
+    max: Vector = Field(description="highest corner, m; in 2D y = 1")
+    faces: Faces = Field(Faces(), description="what each side of the box is")
+
+    @property
+    def size(self):
+        """Edge lengths (x, y, z), m."""
+        return tuple(high - low for low, high in zip(self.min, self.max, strict=True))
+
+
+class Profile(Table):
+    """How the velocity of a fill varies over its depth: as a share of its mean."""
+
+    kind: Literal["linear", "log", "table"] = Field(description="linear, logarithmic, or a table of shares by height")
+    bottom: Annotated[Real, Field(ge=0, le=2)] = Field(
+        0.0, description="linear: share at the bottom; at the top it is 2 less this"
+    )
+    roughness: Moderate | None = Field(None, description="log: roughness ks of the bed, m; u ~ ln(30 z / ks)")
+    heights: tuple[Number, ...] = Field((), description="table: heights above the bottom of the fill, m, ascending")
+    shares: tuple[Number, ...] = Field((), description="table: shares of the mean at these heights")
+
+
+class Fill(Table):
+    """A box of water at the start; bodies and the gate are cut out of it."""
+
+    min: Vector = Field(description="lowest corner, m")
+    max: Vector = Field(description="highest corner, m; its z is the water level, floating bodies included")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity at t = 0, m/s; of a profile its mean")
+    profile: Profile | None = Field(None, description="how the velocity varies over the depth; left out: not at all")
+
+
+class Water(Table):
+    """The water and the scheme that moves it."""
+
+    scheme: Literal["wcmps"] = Field("wcmps", description="weakly compressible moving particles (Mellado 2021, ch. 5)")
+    density: Positive = Field(1000.0, description="density, kg/m3")
+    viscosity: NotNegative = Field(1e-6, description="kinematic viscosity, m2/s")
+    speed: Moderate | None = Field(
+        None, description="largest expected speed, m/s; left out: 2 sqrt(g H), H the greatest depth of the fill"
+    )
+    sound: Real = Field(10.0, ge=5, le=1000, description="speed of sound over the largest expected speed")
+    weight: Literal["wendland_c4", "wendland_c2", "mps"] = Field(
+        "wendland_c4", description="weight of the sums over neighbours; mps is re / r - 1"
+    )
+    support: Real = Field(3.1, ge=2.1, le=4, description="radius of the support over the spacing")
+    diffusion: Share = Field(0.5, description="diffusion of density, delta")
+    noise_damping: Annotated[Real, Field(ge=0, le=0.005)] = Field(
+        0.00015, description="damping of what changes from particle to particle: a biharmonic viscosity over c0 l0^3"
+    )
+    restitution: Share = Field(0.5, description="restitution of water that comes too close to walls and bodies")
+    collision_distance: Share = Field(0.9, description="distance of water that comes too close, over the spacing")
+    shifting: Switch = Field(True, description="whether particles are shifted to keep them evenly spread")
+    recovery: Share = Field(
+        0.1, description="rate at which shifted water takes the density of its arrangement, over 2 sqrt(g / depth)"
+    )
+    disorder: Annotated[Real, Field(ge=0, le=0.5)] = Field(
+        0.0, description="how far particles are off the lattice at the start, at most, over the spacing"
+    )
+    pressure: Literal["hydrostatic", "zero"] = Field("hydrostatic", description="pressure at the start")
+    fill: tuple[Fill, ...] = Field((), description="boxes of water at the start")
+
+
+class Shape(Table):
+    """The shape of a body about its centre."""
+
+    kind: Literal["box"] = Field("box", description="a box")
+    size: Size = Field(description="edge lengths (x, y, z) before turning, m; in 2D y = 1")
+
+    @property
+    def volume(self):
+        """Volume, m3."""
+        return math.prod(self.size)
+
+
+class Body(Table):
+    """A rigid body. Exactly one of density and mass is given."""
+
+    name: Name = Field(description="name, used in results: a letter, then letters, digits, _ or -")
+    shape: Shape = Field(description="shape")
+    density: Positive | None = Field(None, description="density, kg/m3")
+    mass: Positive | None = Field(None, description="mass, kg; in 2D kg per metre of width")
+    position: Place = Field(description='centre, m; "float" as z floats the body at its draught in the fill under it')
+    angles: Vector = Field((0.0, 0.0, 0.0), description="turned about the x, then the y, then the z axis, degrees")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity of the centre at the start, m/s")
+    spin: Vector = Field((0.0, 0.0, 0.0), description="angular velocity at the start, global axes, rad/s")
+    material: Name = Field(description="name of its material")
+    fixed: Switch = Field(False, description="never moves")
+    released: Number | None = Field(None, description="held in place before this time, s; left out: never held")
+
+
+class Gate(Table):
+    """A plate across the whole box that rises at constant speed."""
+
+    min_x: Number = Field(description="upstream face, m")
+    max_x: Number = Field(description="downstream face, m")
+    bottom: Number | None = Field(None, description="lower edge while closed, m; left out: the floor")
+    speed: NotNegative = Field(0.4, description="upward speed once it opens, m/s")
+    opens: Number = Field(0.0, description="time at which it starts to rise, s")
+
+
+class Material(Table):
+    """What contacts need to know of a material."""
+
+    young: Positive = Field(description="Young's modulus, Pa")
+    poisson: Real = Field(ge=0, lt=0.5, description="Poisson's ratio")
+    friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
+    restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
+
+
+class Contacts(Table):
+    """How bodies touch each other, the walls and the gate."""
+
+    law: Literal["hertz"] = Field("hertz", description="contact law")
+    foundation_depth: Positive | None = Field(
+        None, description="depth of the elastic layer under a face in contact, m; left out: the law's own choice"
+    )
+    steps_per_contact: Annotated[Whole, Field(ge=5, le=10000)] = Field(20, description="steps in one contact, at least")
+
+
+class Run(Table):
+    """How long and in what steps."""
+
+    until: Positive = Field(description="end time, s")
+    settle: NotNegative = Field(0.0, description="length of damped motion before t = 0, s")
+    cfl: Real = Field(1.0, gt=0, le=1.75, description="time step over spacing / (speed of sound + largest speed)")
+    skin: Real = Field(0.4, gt=0, le=2, description="margin of the neighbour lists over the spacing")
+    rebuild_at_most: Count = Field(20, description="steps between rebuilds of the neighbour lists, at most")
+    outside: Literal["remove", "stop"] = Field(
+        "remove", description="what becomes of water and bodies that leave the box"
+    )
+    patience: Positive = Field(600.0, description="wall time without progress after which a rank is taken for hung, s")
+    balance_every: Count = Field(1, description="rebuilds between looks at the balance of the ranks")
+
+
+class Gauge(Table):
+    """A place where the water level is written: the top of the highest connected water within 1.5 spacings."""
+
+    name: Name = Field(description="name, used in results: a letter, then letters, digits, _ or -")
+    x: Number = Field(description="place, m")
+    y: Number | None = Field(None, description="place, m; left out: the middle of the box")
+
+
+class Output(Table):
+    """What is written, and when."""
+
+    frames: Positive = Field(0.05, description="time between frames, s")
+    series: Positive = Field(0.005, description="time between rows of the series, s")
+    gauges: tuple[Gauge, ...] = Field((), description="where the water level is written")
+    checkpoints: Positive = Field(15.0, description="wall time between checkpoints, minutes; the last two are kept")
+    milestones: Positive | None = Field(
+        None, description="time between checkpoints that are kept for good, s; left out: none"
+    )
+
+
+class Case(Table):
+    """A complete case."""
+
+    title: str = Field("", description="one line for people")
+    dimensions: Literal[2, 3] = Field(description="2 (the x-z plane, one metre wide) or 3")
+    spacing: Real = Field(ge=1e-6, le=1e6, description="particle spacing l0, m; must divide the box")
+    gravity: Vector = Field((0.0, 0.0, -9.81), description="gravity, m/s2")
+    wall_material: Name | None = Field(None, description="material of walls and gate; left out: the first material")
+    box: Box = Field(description="the box that holds everything")
+    water: Water = Field(Water(), description="the water and its scheme")
+    gate: Gate | None = Field(None, description="a plate that rises; left out: none")
+    contacts: Contacts = Field(Contacts(), description="how bodies touch")
+    run: Run = Field(description="how long and in what steps")
+    output: Output = Field(Output(), description="what is written, and when")
+    materials: dict[Name, Material] = Field({}, description="materials by name")
+    bodies: tuple[Body, ...] = Field((), description="rigid bodies")
+
+    @property
+    def start(self):
+        """Time of the first step, s: the settling runs before t = 0."""
+        return 0.0 - self.run.settle
+
+    @property
+    def depth(self):
+        """Greatest depth of the fill above the floor of the box, m; 0 without fill."""
+        return max((0.0, *(fill.max[2] - self.box.min[2] for fill in self.water.fill)))
+
+    @property
+    def speed(self):
+        """Largest expected speed, m/s: `water.speed`, else 2 sqrt(g H) (Amaro et al. 2021)."""
+        if self.water.speed is not None:
+            return self.water.speed
+        return 2.0 * math.sqrt(math.hypot(*self.gravity) * self.depth)
+
+    @property
+    def sound_speed(self):
+        """Speed of sound of the water model, c0, m/s."""
+        return self.water.sound * self.speed
+
+    @property
+    def axes(self):
+        """Indices of the axes along which things move: (0, 1, 2), in 2D (0, 2)."""
+        return (0, 2) if self.dimensions == 2 else (0, 1, 2)
+
+    def mass_of(self, body):
+        """Mass of one of `bodies`, kg (2D: per metre of width)."""
+        return body.density * body.shape.volume if body.mass is None else body.mass
+
+    def density_of(self, body):
+        """Density of one of `bodies`, kg/m3."""
+        return body.mass / body.shape.volume if body.density is None else body.density
+
+    def warnings(self):
+        """What is allowed but doubtful: a list of messages."""
+        return doubts(self)
+
+    def to_toml(self):
+        """The complete case as a TOML text that loads back equal; keys without a value are left out."""
+        return written(self.model_dump(exclude_none=True))
+
+
+def load(path, overrides=()):
+    """Read, complete and check a case file.
+
+    `overrides` are texts "key.path=value", list entries addressed by number or by name (bodies.A1.density=900).
+    Raises InputError with every fault found.
+    """
+    return parse(replaced(read(Path(path)), overrides))
+
+
+def parse(data):
+    """A complete, checked case from the nested dict of a case file. Raises InputError with every fault found."""
+    return checked(*validated(Case, data))
+
+
+def schema():
+    """JSON schema of a case file, a dict."""
+    described = Case.model_json_schema()
+    described["properties"]["extends"] = {"type": "string", "description": "case file this one adds to (relative path)"}
+    described["anyOf"] = [{"required": ["extends"]}, {"required": described.pop("required")}]
+    return described

@@ -1,0 +1,238 @@
+"""Films of water in gaps too thin for a particle: what keeps a grounded floe afloat and touching floes apart.
+
+A gap thinner than the spacing holds no particle, so a face that looks into it would feel no water at all: a floe on the
+bed would be pressed onto it, two floes together, by the full pressure on their other sides. In nature water stands in
+such gaps, at the pressure of the water around them. Here every face is cut into patches, one per sample of its outer
+layer. The pressure in a film is hydrostatic, at the mean head of the water that the body sees along its edges; a patch
+feels it as far as a solid lies close in front of it and no particle does, and as far as its face is fed: by the share
+of its rim where there is water, of all the rim that such water would reach and that is open to it.
+"""
+
+import itertools
+import math
+
+import numpy as np
+
+from parsim.boundary.wall import ends_of_walls, walled_sides
+from parsim.fluid.weights.choice import weight_at
+from parsim.geometry.rotation import matrices, to_body, to_global
+from parsim.machine.jit import kernel
+from parsim.particles.state import BODY
+
+_NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
+_FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
+
+
+class Films:
+    """The patches of all bodies. What they need from step to step is in `bodies.film`: see `Bodies`.
+
+    Faces are numbered 2 axis + (0 low, 1 high) in the body frame.
+    """
+
+    def __init__(self, case, bodies, samples, lattice):
+        self.bodies, self.samples = bodies, samples
+        self._spacing, self._weight = case.spacing, lattice.weight
+        self._head = case.water.density * np.array(case.gravity)
+        self._layer, self._deep = _layers(lattice)
+        self._planes = _planes(case)
+        self._period = case.box.size[0] if case.box.faces.x_min == "periodic" else math.inf
+        self._axes = case.axes
+        self._patches()
+
+    def _patches(self):
+        """One patch per sample of an outer layer and face it belongs to."""
+        s, half = self.samples, self.bodies.half[self.samples.body]
+        count = np.ones_like(half)
+        for a in self._axes:
+            count[:, a] = np.maximum(np.rint(2.0 * half[:, a] / self._spacing), 1.0)
+        parts, outer = [], {}
+        for a, sign in itertools.product(self._axes, (-1, 1)):
+            outer[a, sign] = np.abs(sign * s.offsets[:, a] / half[:, a] - (1.0 - 1.0 / count[:, a])) < 1e-9
+        for a, sign in outer:
+            at = np.flatnonzero(outer[a, sign])
+            rim = np.zeros(at.size, bool)
+            for (b, _), layer in outer.items():
+                rim |= layer[at] & (b != a)
+            place = s.offsets[at].copy()
+            place[:, a] = sign * half[at, a]
+            area = np.prod([2.0 * half[at, b] / count[at, b] for b in self._axes if b != a], axis=0)
+            parts.append((at, np.full(at.size, 2 * a + (sign > 0)), rim, place, area))
+        columns = (np.concatenate(column) for column in zip(*parts, strict=True))
+        self.sample, self._face, self._rim, self._place, self._area = columns
+        self._patch = np.full((len(s), 6), -1)
+        self._patch[self.sample, self._face] = np.arange(self.sample.size)
+
+    def find(self, domain):
+        """Note, after a rebuild, which patches this rank has, their particles, and which bodies are near which."""
+        p, own = domain.particles, domain.own
+        row = np.full(len(self.samples), -1)
+        at = own.start + np.flatnonzero((p.kind[own] == BODY) & (p.image[own] == 0))
+        row[p.sample[at]] = at
+        self._row = row
+        self._here = np.flatnonzero(self.samples.here[self.sample])
+        size = np.sqrt((self.bodies.half[:, self._axes] ** 2).sum(1))
+        span = size[:, None] + size[None, :] + (_FAR + 2.0) * self._spacing
+        apart = self.bodies.position[:, None] - self.bodies.position[None, :]
+        if self._period < math.inf:
+            apart[:, :, 0] -= self._period * np.rint(apart[:, :, 0] / self._period)
+        close = ((apart**2).sum(2) < span**2) & ~np.eye(len(size), dtype=bool)
+        self._others = np.ascontiguousarray(np.nonzero(close)[1])  # a column of pairs, or the kernel compiles anew
+        self._first = np.concatenate([[0], np.cumsum(close.sum(1))])
+
+    def loads(self, domain, near, plate, position, quaternion):
+        """What this rank's patches add to sums over all ranks: values (n, 6) and their rows (n,).
+
+        Rows by body: loads, N and N m; then, each `bodies` rows further on, by face the wet rim and the rim that is dry
+        though open and below the water line, in patches; and the sum of the heads along wet rims, Pa, and their number.
+        """
+        p, here, b = domain.particles, self._here, self.bodies
+        load, wet, dry, heads = np.zeros((4, here.size, 6))
+        patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
+                    self.samples.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position,
+                    matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period, self._planes,
+                    plate, self._head, b.film, self._spacing, self._weight, self._layer, self._deep, load, wet,
+                    dry, heads)
+        body = self.samples.body[self.sample[here]].astype(np.int64)
+        return np.concatenate([load, wet, dry, heads]), np.concatenate([body + k * len(b) for k in range(4)])
+
+    def keep(self, wet, dry, heads):
+        """Note the sums over all ranks, (bodies, 6) each, for the next step."""
+        fed = wet.sum(1) / np.maximum(wet.sum(1) + dry.sum(1), 1e-300)
+        rim = wet + dry
+        self.bodies.film[:, 0] = heads[:, 0] / np.maximum(heads[:, 1], 1e-300)
+        # a face that is sealed all round is as well fed as the body
+        self.bodies.film[:, 1:] = np.where(rim > 0.0, wet / np.maximum(rim, 1e-300), fed[:, None])
+
+
+def _layers(lattice):
+    """Sums of W over the first layer of a lattice, one spacing ahead, and of W d / r2 over all layers, in spacings."""
+    points = [(w, r, up / lattice.spacing) for w, _, r, up in lattice.points() if up > 0.5 * lattice.spacing]
+    first = math.fsum(w for w, _, up in points if up < 1.5)
+    return first, math.fsum(w * up * (lattice.spacing / r) ** 2 for w, r, up in points)
+
+
+def _planes(case):
+    """The walls of the box: rows (axis, side, level, lowest and highest corner), side -1 for the low ones."""
+    ends = np.concatenate(ends_of_walls(case))
+    return np.array([(*side, *ends) for side in walled_sides(case)], float).reshape(-1, 9)
+
+
+@kernel
+def gap_to_plane(x, n, plane):
+    """Distance along the direction n (3,) from x (3,) to a wall in front of it; inf where it faces away or ends."""
+    a = int(plane[0])
+    along = n[a] * plane[1]
+    if along <= 0.5:
+        return np.inf
+    gap = (plane[2] - x[a]) * plane[1] / along
+    for k in range(3):
+        if not plane[3 + k] <= x[k] + (gap * n[k] if k != a else 0.0) <= plane[6 + k]:
+            return np.inf
+    return gap
+
+
+@kernel
+def gap_to_box(x, n, half, behind):
+    """Distance along n from x, both in the frame of the box, to its surface, from `behind` the point on; else inf."""
+    enter, leave = -behind, np.inf
+    for a in range(3):
+        if abs(n[a]) < 1e-12:
+            if abs(x[a]) > half[a]:
+                return np.inf
+            continue
+        t0, t1 = (-half[a] - x[a]) / n[a], (half[a] - x[a]) / n[a]
+        enter, leave = max(enter, min(t0, t1)), min(leave, max(t0, t1))
+    return enter if enter <= leave else np.inf
+
+
+@kernel
+def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, spacing):
+    """Distance from x (3,) along n (3,) to the nearest wall, gate or body of `others`; inf where there is none.
+
+    `gate` (4,): its low and high x, the height of its lower edge, and 1 where there is one; `beside`: the x that tells
+    which face of it counts.
+    """
+    gap = np.inf
+    for w in range(len(planes)):
+        gap = min(gap, gap_to_plane(x, n, planes[w]))
+    if gate[3] > 0.0 and x[2] >= gate[2]:
+        level, side = (gate[0], 1.0) if beside < 0.5 * (gate[0] + gate[1]) else (gate[1], -1.0)
+        if n[0] * side > 0.5:
+            gap = min(gap, (level - x[0]) * side / (n[0] * side))
+    for d in others:
+        dx = x[0] - centre[d, 0]
+        if period < np.inf:
+            dx -= period * np.rint(dx / period)
+        place = to_body(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
+        gap = min(gap, gap_to_box(place, to_body(turn[d], n[0], n[1], n[2]), half[d], spacing))
+    return gap
+
+
+@kernel
+def water_at(i, x, n, start, middle, index, px, py, pz, weight):
+    """Sums of sample i: W over all the water it sees; W d / r2 over that before its face, at x with normal n, d ahead.
+
+    The second is what the water pushes with: one layer does about 85 % of what deep water does, the film the rest.
+    """
+    every, ahead = 0.0, 0.0
+    for c in range(start[i], middle[i]):
+        j = index[c]
+        dx, dy, dz = px[j] - px[i], py[j] - py[i], pz[j] - pz[i]
+        r2 = dx * dx + dy * dy + dz * dz
+        wt, slope, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+        every += wt
+        if (px[j] - x[0]) * n[0] + (py[j] - x[1]) * n[1] + (pz[j] - x[2]) * n[2] > 0.0:
+            ahead += slope * (dx * n[0] + dy * n[1] + dz * n[2])
+    return every, ahead
+
+
+@kernel
+def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start, middle, index, px, py, pz, pressure,
+                centre, turn, half, first, others, period, planes, gate, head, film, spacing, weight, layer, deep, load,
+                wet, dry, heads):
+    """Load of the film on each patch `here`, and what its rim tells of the water: see `Films.loads`."""
+    for k in range(here.size):
+        m = here[k]
+        s, f = sample[m], face[m]
+        b = body[s]
+        near = others[first[b] : first[b + 1]]
+        lx, ly, lz = to_global(turn[b], place[m, 0], place[m, 1], place[m, 2])
+        x = (centre[b, 0] + lx, centre[b, 1] + ly, centre[b, 2] + lz)
+        n = normal(turn[b], f)
+        i = row[s]
+        every, ahead = 0.0, 0.0
+        if i >= 0:
+            every, ahead = water_at(i, x, n, start, middle, index, px, py, pz, weight)
+            ahead *= spacing / deep
+        value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
+        if on_rim[m]:
+            share = min(_FEED * every / layer, 1.0) if i >= 0 and pressure[i] > 0.0 else 0.0
+            if share > 0.0:
+                heads[k, 0] = share * (pressure[i] - head[0] * px[i] - head[1] * py[i] - head[2] * pz[i])
+                heads[k, 1] = share
+                wet[k, f] = share
+            if share < 1.0 and value > 0.0 and film[b, 0] != 0.0:
+                for g in range(6):
+                    c = patch[s, g]
+                    if g == f or c < 0:
+                        continue
+                    ex, ey, ez = to_global(turn[b], place[c, 0], place[c, 1], place[c, 2])
+                    gap = gap_ahead((centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez), normal(turn[b], g),
+                                    centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
+                    if gap > _FAR * spacing:
+                        dry[k, f] = 1.0 - share
+        if value <= 0.0 or film[b, 1 + f] == 0.0 or ahead >= 1.0:
+            continue
+        gap = gap_ahead(x, n, centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
+        closed = min(max((_FAR - gap / spacing) / (_FAR - _NEAR), 0.0), 1.0)
+        force = -value * film[b, 1 + f] * area[m] * closed * (1.0 - ahead)
+        fx, fy, fz = force * n[0], force * n[1], force * n[2]
+        load[k, 0], load[k, 1], load[k, 2] = fx, fy, fz
+        load[k, 3], load[k, 4], load[k, 5] = ly * fz - lz * fy, lz * fx - lx * fz, lx * fy - ly * fx
+
+
+@kernel
+def normal(t, face):
+    """Outward normal of a face, global axes; t (9,), the rotation matrix by rows."""
+    a, sign = face // 2, 2.0 * (face % 2) - 1.0
+    return sign * t[a], sign * t[3 + a], sign * t[6 + a]

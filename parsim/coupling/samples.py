@@ -1,0 +1,232 @@
+"""Water on bodies, bodies on water: the samples that a body shows to the water, and the loads they bring back."""
+
+import math
+
+import numpy as np
+
+from parsim.errors import InputError
+from parsim.geometry.rotation import matrices
+from parsim.machine.jit import kernel
+from parsim.particles.state import BODY, Particles, make_id
+from parsim.solid.acceleration import accelerate_bodies
+
+_WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
+
+
+class BodySamples:
+    """Even samplings of all bodies at about the spacing, down to a support below their surface.
+
+    Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
+    the pose, never integrated. `here` (samples,): which lay in this slab when it was last asked for.
+    """
+
+    def __init__(self, case, bodies, layers):
+        self.bodies, self._gravity = bodies, np.array(case.gravity, float)
+        self._spacing, self._planar = case.spacing, case.dimensions == 2
+        self._axes, self._way_out = np.array(case.axes), _WAY_OUT * case.spacing / case.speed
+        offsets, scales, owners = [], [], []
+        for b, half in enumerate(bodies.half):
+            grid, share = self._grid(half, case.spacing * layers)
+            offsets.append(grid)
+            scales.append(np.full(len(grid), share))
+            owners.append(np.full(len(grid), b, np.int32))
+        self.offsets = np.concatenate([np.zeros((0, 3)), *offsets])
+        self.scale = np.concatenate([np.zeros(0), *scales])
+        self.body = np.concatenate([np.zeros(0, np.int32), *owners])
+
+    def _grid(self, half, depth):
+        """Offsets (n, 3) of one box's samples, m, and the share of a lattice volume that each carries."""
+        l0 = self._spacing
+        counts = [max(round(2.0 * h / l0), 1) for h in half]
+        if self._planar:
+            counts[1] = 1
+        axes = [((np.arange(n) + 0.5) / n * 2.0 - 1.0) * h for n, h in zip(counts, half, strict=True)]
+        grid = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+        used = [0, 2] if self._planar else [0, 1, 2]
+        inner = np.min(half[used] - np.abs(grid[:, used]), axis=1)
+        share = math.prod(2.0 * half[a] / counts[a] / l0 for a in used)
+        return grid[inner < depth], share
+
+    def __len__(self):
+        return len(self.offsets)
+
+    def samples(self, slab, time):
+        """Body samples of the slab that may see water; InputError for a body that comes to a periodic side."""
+        x, y, z = (np.empty(len(self)) for _ in range(3))
+        turn = matrices(self.bodies.quaternion)
+        locate(self.offsets, self.body, self.bodies.position, turn, x, y, z)
+        beside = slab.beside_period(x, y, z)
+        if beside.any():
+            raise InputError(f"bodies.{self.bodies.names[self.body[beside.argmax()]]}: reaches a periodic side at t = "
+                             f"{time:.6g} s; water and bodies do not see each other across it: keep off, or use walls")
+        cells = slab.cells(x, y, z)
+        cells[self.bodies.gone[self.body]] = -1
+        self.here = cells >= 0
+        at = np.flatnonzero(slab.awake(cells))
+        return Particles(at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x[at], y=y[at],
+                         z=z[at], scale=self.scale[at])
+
+    def place(self, p, position, quaternion):
+        """Put the body samples among the particles `p`, halo included, where the given pose has them.
+
+        Velocity and acceleration are those of the rigid motion; returns nothing.
+        """
+        b = self.bodies
+        place_samples(p.kind, p.body, p.sample, self.offsets, position, matrices(quaternion), b.velocity, b.spin,
+                      b.acceleration, b.angular_acceleration, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az)
+
+    def loads(self, domain, near, force, response, centre, others, rows):
+        """Sums over all ranks about `centre` (bodies, 3): loads, N and N m, films (3 arrays), added inertia.
+
+        `force` (samples, 3), `response` (samples, 6): see `WCMPS.react`; `others` (n, 6) at `rows` (n,): see
+        `Films.loads`. Loads and films are (bodies, 6); the inertia that the water adds is (bodies, 24): the upper
+        triangle of a symmetric matrix of six by rows, kg, kg m and kg m2, then zeros.
+        """
+        p, at, count = domain.particles, near.body, len(centre)
+        each, added = np.empty((at.size, 6)), np.empty((at.size, 24))
+        levers(at, p.body, p.x, p.y, p.z, centre, force, each)
+        added_inertia(at, p.body, p.x, p.y, p.z, centre, response, added)
+        body = p.body[at].astype(np.int64)
+        rows = np.concatenate([body, rows, *(body + k * count for k in range(4, 8))])
+        values = np.concatenate([each, others, *np.split(added, 4, axis=1)])
+        load, *rims, a, b, c, d = np.split(domain.sum(values, rows, 8 * count), 8)
+        return load, rims, np.concatenate([a, b, c, d], axis=1)
+
+    def answer(self, p, near, position, quaternion, load, added, lever, time):
+        """Find the accelerations of the bodies, give the samples those and their pressures; loads (bodies, 6), N, N m.
+
+        The water's load is linear in a body's acceleration: `load` less `added` times its change. A load at the
+        acceleration of the step before, which is the explicit way, grows without end where the water near a body
+        outweighs it. Contacts count as they were in the step before.
+        """
+        b = self.bodies
+        change = np.zeros((len(b), 6))
+        accelerate_bodies(load, added, b.mass, b.inertia, quaternion, b.held(time), b.planar, self._gravity,
+                          b.contact_load, b.spin, b.acceleration, b.angular_acceleration, change)
+        respond(near.body, p.body, p.x, p.y, p.z, position, change, lever, p.p)
+        self.place(p, position, quaternion)
+        return load
+
+    def find(self, domain, near):
+        """Note, after a rebuild, which of this rank's water may meet a body."""
+        self._beside = near.fluid[domain.near(BODY, "kind")[near.fluid]]
+
+    def keep_out(self, p, near, position, quaternion):
+        """Turn the velocity of water that is inside a body at the given pose, so that it comes out again.
+
+        Water one layer thick has no pressure, so it can sink into what it lies on. The impulse is not given back: these
+        are single particles.
+        """
+        b = self.bodies
+        expel(self._beside, near.middle, near.end, near.index, p.body, p.x, p.y, p.z, position, matrices(quaternion),
+              b.half, b.velocity, b.spin, self._axes, self._way_out, p.u, p.v, p.w)
+
+
+@kernel
+def locate(offsets, body, position, turn, x, y, z):
+    """Global positions of samples: centre plus turned offset."""
+    for s in range(body.size):
+        b = body[s]
+        o = offsets[s]
+        x[s] = position[b, 0] + (turn[b, 0, 0] * o[0] + turn[b, 0, 1] * o[1] + turn[b, 0, 2] * o[2])
+        y[s] = position[b, 1] + (turn[b, 1, 0] * o[0] + turn[b, 1, 1] * o[1] + turn[b, 1, 2] * o[2])
+        z[s] = position[b, 2] + (turn[b, 2, 0] * o[0] + turn[b, 2, 1] * o[1] + turn[b, 2, 2] * o[2])
+
+
+@kernel
+def place_samples(kind, body, sample, offsets, position, turn, velocity, spin, acceleration, angular, x, y, z, u, v, w,
+                  ax, ay, az):
+    """Position, velocity and acceleration of every body sample from the rigid motion of its body."""
+    for i in range(kind.size):
+        if kind[i] != BODY:
+            continue
+        b = body[i]
+        o = offsets[sample[i]]
+        dx = turn[b, 0, 0] * o[0] + turn[b, 0, 1] * o[1] + turn[b, 0, 2] * o[2]
+        dy = turn[b, 1, 0] * o[0] + turn[b, 1, 1] * o[1] + turn[b, 1, 2] * o[2]
+        dz = turn[b, 2, 0] * o[0] + turn[b, 2, 1] * o[1] + turn[b, 2, 2] * o[2]
+        x[i], y[i], z[i] = position[b, 0] + dx, position[b, 1] + dy, position[b, 2] + dz
+        p, q, r = spin[b]
+        du, dv, dw = q * dz - r * dy, r * dx - p * dz, p * dy - q * dx
+        u[i], v[i], w[i] = velocity[b, 0] + du, velocity[b, 1] + dv, velocity[b, 2] + dw
+        e, f, g = angular[b]
+        ax[i] = acceleration[b, 0] + (f * dz - g * dy) + (q * dw - r * dv)
+        ay[i] = acceleration[b, 1] + (g * dx - e * dz) + (r * du - p * dw)
+        az[i] = acceleration[b, 2] + (e * dy - f * dx) + (p * dv - q * du)
+
+
+@kernel
+def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity, spin, axes, way_out, u, v, w):
+    """Velocity of fluid inside a body: outward through the nearest face, at least its depth in `way_out` s."""
+    for i in at:
+        last = -1
+        for s in range(middle[i], end[i]):
+            b = body[index[s]]
+            if b < 0 or b == last:
+                continue
+            last = b
+            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
+            depth, axis, sign = np.inf, 0, 1.0
+            for a in axes:
+                along = turn[b, 0, a] * dx + turn[b, 1, a] * dy + turn[b, 2, a] * dz
+                if half[b, a] - abs(along) < depth:
+                    depth, axis, sign = half[b, a] - abs(along), a, 1.0 if along > 0.0 else -1.0
+            if depth <= 0.0:
+                continue
+            nx, ny, nz = sign * turn[b, 0, axis], sign * turn[b, 1, axis], sign * turn[b, 2, axis]
+            p, q, r = spin[b]
+            away = ((u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny
+                    + (w[i] - velocity[b, 2] - (p * dy - q * dx)) * nz)
+            more = max(depth / way_out - away, 0.0)
+            u[i] += more * nx
+            v[i] += more * ny
+            w[i] += more * nz
+
+
+@kernel
+def levers(at, body, x, y, z, centre, force, out):
+    """Force and torque about the body's centre of each sample `at`: rows of out (n, 6)."""
+    for row in range(at.size):
+        i = at[row]
+        b = body[i]
+        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        fx, fy, fz = force[row]
+        out[row, 0], out[row, 1], out[row, 2] = fx, fy, fz
+        out[row, 3] = dy * fz - dz * fy
+        out[row, 4] = dz * fx - dx * fz
+        out[row, 5] = dx * fy - dy * fx
+
+
+@kernel
+def added_inertia(at, body, x, y, z, centre, response, out):
+    """J^T S J of each sample `at`, S its `response`, J = (1, -[r]): upper triangles by rows of out (n, 24)."""
+    j, s, sj = np.zeros((3, 6)), np.zeros((3, 3)), np.zeros((3, 6))
+    j[0, 0] = j[1, 1] = j[2, 2] = 1.0
+    for row in range(at.size):
+        i = at[row]
+        b = body[i]
+        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        j[0, 4], j[0, 5], j[1, 3], j[1, 5], j[2, 3], j[2, 4] = dz, -dy, -dz, dx, dy, -dx
+        s[0, 0], s[0, 1], s[0, 2], s[1, 1], s[1, 2], s[2, 2] = response[row]
+        s[1, 0], s[2, 0], s[2, 1] = s[0, 1], s[0, 2], s[1, 2]
+        for e in range(3):
+            for c in range(6):
+                sj[e, c] = s[e, 0] * j[0, c] + s[e, 1] * j[1, c] + s[e, 2] * j[2, c]
+        k = 0
+        for a in range(6):
+            for c in range(a, 6):
+                out[row, k] = j[0, a] * sj[0, c] + j[1, a] * sj[1, c] + j[2, a] * sj[2, c]
+                k += 1
+        out[row, 21:] = 0.0
+
+
+@kernel
+def respond(at, body, x, y, z, centre, change, lever, p):
+    """Pressure p of the samples `at` after the `change` (bodies, 6) of their bodies' accelerations; lever (n, 3)."""
+    for row in range(at.size):
+        i = at[row]
+        b = body[i]
+        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        c = change[b]
+        p[i] += (lever[row, 0] * (c[0] + c[4] * dz - c[5] * dy) + lever[row, 1] * (c[1] + c[5] * dx - c[3] * dz)
+                 + lever[row, 2] * (c[2] + c[3] * dy - c[4] * dx))

@@ -1,0 +1,35 @@
+"""The grid of cells of a case, and how many ranks can share it."""
+
+import math
+
+from parsim.errors import InputError
+from parsim.particles.cells import HALO, REACH, Grid
+
+
+def check_ranks(case, ranks):
+    """Raise InputError when the box has too few layers of cells for this many ranks."""
+    layers = grid_of(case).layers
+    if layers < HALO * ranks:
+        raise InputError(f"{ranks} ranks: the box has {layers} layers of cells along x and a rank needs at least "
+                         f"{HALO}; use at most {layers // HALO} ranks")
+
+
+def layers_of(case):
+    """Layers of boundary particles that fill the support."""
+    return math.ceil(case.water.support)
+
+
+def reach_of(case):
+    """Radius of the neighbour lists, m."""
+    return (case.water.support + case.run.skin) * case.spacing
+
+
+def grid_of(case):
+    """The global grid: the box, and beyond its walls and open sides the depth of the wall particles."""
+    beyond, reach = layers_of(case) * case.spacing, reach_of(case)
+    periodic = [getattr(case.box.faces, f"{axis}_min") == "periodic" for axis in "xyz"]
+    low = [c if p else c - beyond for c, p in zip(case.box.min, periodic, strict=True)]
+    high = [c if p else c + beyond for c, p in zip(case.box.max, periodic, strict=True)]
+    if case.dimensions == 2:  # one cell across
+        periodic[1], low[1], high[1] = False, 0.5 - reach / (2 * REACH), 0.5 + reach / (2 * REACH)
+    return Grid(low, high, reach, periodic)

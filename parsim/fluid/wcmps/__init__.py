@@ -1,0 +1,1 @@
+"""Weakly compressible moving particles (Mellado 2021)."""

@@ -1,0 +1,1 @@
+"""What the machine gives: compiler, kernel variants, their cache, clocks."""

@@ -1,0 +1,30 @@
+"""The kinds of Numba kernel.
+
+`kernel` is strict IEEE arithmetic, for sorting and for few elements.
+`each` is the same, threaded over `prange`, for element-wise work on many particles.
+`rows` runs a `prange` over particles; inside one particle's neighbour loop the sum may be reordered for SIMD,
+which depends on nothing but that particle's own list.
+"""
+
+from parsim.machine import variant
+
+variant.apply()
+
+from numba import njit, prange  # noqa: E402, F401  (must follow the settings above)
+
+FAST = {"reassoc", "nsz", "contract"}
+
+
+def kernel(function):
+    """Compile strict and cached, without threads."""
+    return njit(function, cache=True, error_model="numpy", nogil=True)
+
+
+def each(function):
+    """Compile strict and cached, threaded over `prange`."""
+    return njit(function, cache=True, error_model="numpy", nogil=True, parallel=True)
+
+
+def rows(function):
+    """Compile cached, threaded over `prange`, neighbour sums reordered for SIMD."""
+    return njit(function, cache=True, error_model="numpy", nogil=True, parallel=True, fastmath=FAST)

@@ -1,0 +1,89 @@
+"""Kernels of what is watched in a run: energies, particles where none may be, front, water levels."""
+
+import math
+
+import numpy as np
+
+from parsim.machine.jit import kernel
+from parsim.particles.state import DETACHED, SURFACE
+
+
+@kernel
+def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
+    """Kinetic, potential and elastic energy, J, and m / rho over m / rho0 of each fluid particle `at`: out (n, 4).
+
+    Elastic: what the pair forces put into n, the integral of p / (rho0 s) over s = n / n0 of the state,
+    c0^2 / 7 ((s^7 - 1) / 7 - ln s).
+    """
+    for row in range(at.size):
+        i = at[row]
+        s = n[i] / n0
+        s2 = s * s
+        out[row, 0] = 0.5 * mass * (u[i] * u[i] + v[i] * v[i] + w[i] * w[i])
+        out[row, 1] = -mass * (gx * x[i] + gy * y[i] + gz * z[i])
+        out[row, 2] = mass * sound2 / 7.0 * ((s2 * s2 * s2 * s - 1.0) / 7.0 - math.log(s))
+        out[row, 3] = 1.0 / s
+
+
+@kernel
+def misplaced(at, x, y, z, walls, ends, slack, centre, turn, half, gate_low, gate_high, barrier, count):
+    """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
+
+    walls (2, 3): lowest and highest corner between the walls, infinite where there is none; ends (2, 3): of where
+    there are walls; centre (b, 3), turn (b, 3, 3), half (b, 3): the bodies.
+    """
+    for i in at:
+        r, within, behind = (x[i], y[i], z[i]), True, False
+        for a in range(3):
+            within = within and ends[0, a] <= r[a] <= ends[1, a]
+            behind = behind or r[a] < walls[0, a] - slack or r[a] > walls[1, a] + slack
+        count[0] += within and behind
+        for b in range(centre.shape[0]):
+            inside = True
+            for a in range(3):
+                local = 0.0
+                for c in range(3):
+                    local += turn[b, c, a] * (r[c] - centre[b, c])
+                inside = inside and abs(local) < half[b, a] - slack
+            count[1] += inside
+        count[2] += gate_low + slack < r[0] < gate_high - slack and r[2] > barrier + slack
+
+
+@kernel
+def count_surface(at, surface):
+    """Number of surface and detached particles among `at`."""
+    total = 0
+    for i in at:
+        total += surface[i] >= SURFACE
+    return total
+
+
+@kernel
+def columns(at, surface, x, low, width, filled, farthest):
+    """Mark the columns of `width`, m, that hold connected water, and its largest x in each."""
+    for i in at:
+        if surface[i] != DETACHED:
+            k = min(max(int((x[i] - low) / width), 0), filled.size - 1)
+            filled[k] = 1.0
+            farthest[k] = max(farthest[k], x[i])
+
+
+@kernel
+def levels(at, surface, x, y, z, gauges, reach, flat, out):
+    """Highest connected particle within `reach`, m, of each gauge (k, 2) into out (k,); `flat` ignores y."""
+    for k in range(gauges.shape[0]):
+        for i in at:
+            if surface[i] != DETACHED:
+                dx, dy = x[i] - gauges[k, 0], y[i] - gauges[k, 1]
+                if dx * dx + (0.0 if flat else dy * dy) < reach * reach:
+                    out[k] = max(out[k], z[i])
+
+
+def front(filled, farthest, spacing):
+    """Place of the first column without connected water downstream of the first with some, m: the last water before."""
+    wet = np.flatnonzero(filled)
+    if not wet.size:
+        return np.nan
+    gap = np.flatnonzero(filled[wet[0] :] == 0)
+    last = wet[0] + gap[0] - 1 if gap.size else filled.size - 1
+    return farthest[last] + 0.5 * spacing

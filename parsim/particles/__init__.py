@@ -1,0 +1,1 @@
+"""Particles, their cells and their neighbours."""

@@ -1,0 +1,192 @@
+"""Where the water stands at the start: lattices in boxes, less bodies and gate, true to the volume of water.
+
+Gaps narrower than the spacing hold no particle, and a body's underside need not lie on a lattice plane. Hence the
+space that bodies take is measured finely, and as many lattice points are left out as fill it, those deepest inside
+the bodies first, whole rows thinned evenly. Only what lies beside bodies is looked at, the same on every rank.
+"""
+
+import numpy as np
+
+from parsim.boundary.wall import walled_sides
+from parsim.case.fill import level_over, profile_shares
+from parsim.geometry.rotation import matrices
+from parsim.particles.lattice import Lattice
+from parsim.particles.state import FLUID, Particles, make_id
+
+_FINE = 4  # measuring points per spacing and axis
+_OPPOSITE = -0.9  # cosine below which two outward directions face each other across a gap
+
+
+def outside_box(points, centre, turn, half, axes):
+    """Signed distance (n,) to a turned box, m, and the outward direction (n, 3)."""
+    local = (points - centre) @ turn
+    over = np.abs(local) - half
+    over[:, [a for a in range(3) if a not in axes]] = -np.inf
+    beyond = np.maximum(over, 0.0)
+    distance = np.sqrt((beyond**2).sum(axis=1)) + np.minimum(over.max(axis=1), 0.0)
+    direction = np.sign(local) * beyond
+    length = np.sqrt((direction**2).sum(axis=1))
+    return distance, (direction / np.where(length > 0, length, 1.0)[:, None]) @ turn.T
+
+
+def plane_distances(points, case):
+    """Distance (n,) and direction into the water (3,) of each wall and gate face that stands beside the points."""
+    for axis, sign, level in walled_sides(case):
+        yield sign * (level - points[:, axis]), -sign * np.eye(3)[axis]
+    if case.gate is not None:
+        for place, sign in ((case.gate.min_x, -1.0), (case.gate.max_x, 1.0)):
+            distance = sign * (points[:, 0] - place)
+            yield np.where(distance >= 0, distance, np.inf), sign * np.eye(3)[0]
+
+
+def solids(points, case, bodies):
+    """Distance to the nearest body (n,) and whether a point is in a body or in a gap narrower than the spacing."""
+    found = [outside_box(points, centre, turn, half, case.axes)
+             for centre, turn, half in zip(bodies.position, matrices(bodies.quaternion), bodies.half, strict=True)]
+    nearest = np.min([distance for distance, _ in found], axis=0)
+    taken = nearest <= 0.0
+    others = found + [(d, np.broadcast_to(v, points.shape)) for d, v in plane_distances(points, case)]
+    for k, (distance, direction) in enumerate(found):
+        close = np.flatnonzero(~taken & (distance < case.spacing))
+        for other, facing in others[k + 1 :]:
+            cosine = (direction[close] * facing[close]).sum(axis=1)
+            taken[close] |= (distance[close] + other[close] < case.spacing) & (cosine < _OPPOSITE)
+    return nearest, taken
+
+
+def scatter(index):
+    """A fixed shuffle: a well-mixed 64-bit number of each index (splitmix64 of Steele, Lea & Flood 2014)."""
+    with np.errstate(over="ignore"):
+        z = (np.asarray(index).astype(np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        return z ^ (z >> np.uint64(31))
+
+
+def beside_bodies(points, case, bodies):
+    """Numbers (n,) of the points of a Lattice that lie in bodies or within a spacing of them."""
+    found = [np.zeros(0, np.int64)]
+    for centre, half in zip(bodies.position, bodies.half, strict=True):
+        reach = np.sqrt(sum(half[a] ** 2 for a in case.axes)) + 2.0 * case.spacing
+        found.append(points.within(*((np.abs(row - centre[a]) < reach) | (a not in case.axes)
+                                     for a, row in enumerate(points.rows))))
+    return np.unique(np.concatenate(found))
+
+
+def taken_by_bodies(lattices, case, bodies):
+    """Numbers (n,) of the points that are not water, since bodies and the gaps beside them take them.
+
+    Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together.
+    """
+    number, place, spacing, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
+    for points in lattices:
+        beside = beside_bodies(points, case, bodies)
+        number.append(first + beside)
+        place.append(points.points(beside))
+        spacing.append(np.broadcast_to(points.spacing, (beside.size, 3)))
+        first += points.size
+    number, place, spacing = (np.concatenate(parts) for parts in (number, place, spacing))
+    if not number.size:
+        return number
+    nearest, taken = solids(place, case, bodies)
+    near = np.flatnonzero(nearest < case.spacing)
+    share = np.zeros(near.size)
+    fine = (np.arange(_FINE) + 0.5) / _FINE - 0.5
+    steps = [fine if a in case.axes else np.zeros(1) for a in range(3)]
+    for offset in np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3):
+        share += solids(place[near] + offset * spacing[near], case, bodies)[1]
+    share /= _FINE ** len(case.axes)
+    depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near] / case.spacing
+    # water left under one flat face comes out of it by itself, at an edge or in a gap it is flung out: that goes first
+    depth -= np.where(depth < 0.0, np.abs(share - 0.5 + depth), 0.0)
+    depth = np.round(depth, 6)  # points of one lattice plane are equally deep
+    return number[near[np.lexsort((scatter(number[near]), depth))[: round(share.sum())]]]
+
+
+def kept_out(points, number, place, case, bodies):
+    """`place` (n, 3), m, of points of a Lattice that were moved; moved back where that led into bodies or the gate.
+
+    None comes nearer than half a spacing to them that has not stood there before.
+    """
+    place, half = place.copy(), 0.5 * case.spacing
+    near = np.flatnonzero(np.isin(number, beside_bodies(points, case, bodies)))
+    even = points.points(number)
+    if near.size:
+        before, after = (solids(at[near], case, bodies)[0] for at in (even, place))
+        back = near[after < np.minimum(before, half)]
+        place[back] = even[back]
+    if case.gate is not None:
+        before, after = (np.maximum(case.gate.min_x - at[:, 0], at[:, 0] - case.gate.max_x) for at in (even, place))
+        back = after < np.minimum(before, half)
+        place[back] = even[back]
+    return place
+
+
+def disordered(points, number, first, share, axes):
+    """Points (n, 3), m, of these numbers of a Lattice, each moved by up to `share` spacings along each of `axes`.
+
+    The moves are a fixed shuffle of the particle's number, `first` + number; none leads beyond the outermost planes.
+    """
+    place = points.points(number)
+    if share:
+        for a in axes:
+            move = scatter(3 * (first + number) + a) / 2.0**63 - 1.0
+            place[:, a] = np.clip(place[:, a] + share * points.spacing[a] * move, *points.rows[a][[0, -1]])
+    return place
+
+
+def columns(case):
+    """Where the lattice planes across x of all fills are (n,), m, and how many points each has (n,)."""
+    fills = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
+    x = [points.rows[0] for points in fills]
+    count = [np.full(points.rows[0].size, points.size // points.rows[0].size) for points in fills]
+    return np.concatenate([np.zeros(0), *x]), np.concatenate([np.zeros(0), *count])
+
+
+def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
+    """The water at the start, in pressure balance: the particles at `here`(x), bool.
+
+    Ids count the points of all fills, so that they are the same for any slab. Velocities are those of the fills, but
+    for water that settles first: see `flow`.
+    """
+    lattices = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
+    parts, number, taken = [], 0, taken_by_bodies(lattices, case, bodies)
+    for fill, points in zip(case.water.fill, lattices, strict=True):
+        x, y, z = points.rows
+        open_water = here(x)
+        if case.gate is not None:
+            open_water &= (x < case.gate.min_x) | (x > case.gate.max_x)
+        mine = points.within(open_water, np.ones(y.size, bool), np.ones(z.size, bool))
+        mine = mine[~np.isin(number + mine, taken)]
+        place = kept_out(points, mine, disordered(points, mine, number, case.water.disorder, case.axes), case, bodies)
+        parts.append(_particles(case, scheme, fill, place, number + mine))
+        number += points.size
+    fluid = Particles.join(parts) if parts else Particles()
+    if case.start >= 0.0:
+        flow(case, fluid)
+    return fluid
+
+
+def _particles(case, scheme, fill, points, idents):
+    depth = np.zeros(len(points))
+    if case.water.pressure == "hydrostatic":
+        depth = level_over(case.water.fill, fill, points[:, 0], points[:, 1]) - points[:, 2]
+    pressure = case.water.density * -case.gravity[2] * depth
+    return Particles(
+        len(points), id=make_id(FLUID, idents), kind=FLUID, x=points[:, 0], y=points[:, 1], z=points[:, 2],
+        n=scheme.number_at(pressure),
+    )
+
+
+def flow(case, p):
+    """Give the fluid among the particles `p` the velocity of the fill it is from, at the height where it is."""
+    first = 0
+    for fill in case.water.fill:
+        last = first + Lattice(fill.min, fill.max, case.spacing, case.axes).size
+        at = np.flatnonzero((p.kind == FLUID) & (p.id >= make_id(FLUID, first)) & (p.id < make_id(FLUID, last)))
+        first = last
+        if not any(fill.velocity):  # water at rest keeps what motion is left in it
+            continue
+        share = profile_shares(fill, p.z[at])
+        for name, speed in zip(("u", "v", "w"), fill.velocity, strict=True):
+            getattr(p, name)[at] = speed * share

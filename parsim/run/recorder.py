@@ -1,0 +1,229 @@
+"""Everything a run writes: the folder, the series, the frames, the progress, the account at the end."""
+
+import json
+import os
+import platform
+import shlex
+import time as clock
+from contextlib import suppress
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+import numpy as np
+
+from parsim import __version__
+from parsim.errors import WriteError
+from parsim.machine import variant
+from parsim.observe.measure import Measure
+from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
+from parsim.output.reader import MARK
+from parsim.output.series import TABLES, Table, next_multiple
+from parsim.run.progress import Progress
+
+_FIELDS = {"id": ("i8", ()), "velocity": ("f8", (3,)), "pressure": ("f8", ()), "class": ("u1", ()),
+           "density_ratio": ("f8", ())}
+_BODY = ("position", "quaternion", "velocity", "spin", "water_load", "contact_load", "gravity_load")
+
+
+class Recorder:
+    """Called by the solver: `begin`, `watch` after every step, at last `finish` or `stopped`.
+
+    As a context manager it tells of failure. `account`: that of the checkpoint from which the run goes on.
+    """
+
+    def __init__(self, case, folder, name="", account=None):
+        self.case, self.folder, self.out, self.name = case, folder, folder.path, name
+        self.comm, self.main = folder.comm, folder.comm.rank == 0
+        self.began = clock.perf_counter()
+        self.resumed = account
+        frames = account["frames"] if account else {"water": [], "bodies": []}
+        self.frames = {kind: [tuple(entry) for entry in entries] for kind, entries in frames.items()}
+        self.info = {"status": "running", "parsim": __version__, "started": _now(), "pieces": self._earlier()}
+
+    def _earlier(self):
+        """The pieces of the run that came before this one."""
+        if not self.main or not self.resumed:
+            return []
+        try:
+            pieces = json.loads((self.out / MARK).read_text(encoding="utf-8"))["pieces"]
+        except (OSError, ValueError, KeyError):
+            return []
+        return [{"ended": "killed"} | piece for piece in pieces]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind is not None and self.main:
+            if getattr(self, "progress", None):
+                self.progress.close("failed")
+            if self.folder.lock.mine:
+                with suppress(WriteError):  # of a full disk the error in flight tells already
+                    self._end("failed", error=f"{kind.__name__}: {error}")
+
+    def begin(self, simulation):
+        """Open the tables; write the first rows and frame, unless the run goes on."""
+        self.measure = Measure(self.case, simulation)
+        self.next_frame, self.next_row = simulation.time, simulation.time
+        self.particles = {"fluid": simulation.fluid_count, "active": simulation.active,
+                          "wall": len(simulation.models.walls), "body": len(simulation.models.samples)}
+        if self.resumed:
+            self.particles = self.resumed["particles"]
+            self.next_frame, self.next_row = self.resumed["next_frame"], self.resumed["next_row"]
+        if self.main:
+            self._open_tables()
+            self._write_indices()
+            self.progress = Progress(simulation.time, self.case.run.until)
+            self.info |= self._versions(simulation)
+            self.info["start_s"] = clock.perf_counter() - self.began
+            self.info["pieces"].append({key: self.info[key] for key in ("started", "host", "ranks", "threads")}
+                                       | {"from_step": simulation.step_count})
+            self._write_info()
+        if not self.resumed:
+            self.watch(simulation)
+
+    def _open_tables(self):
+        step = self.resumed["step_count"] if self.resumed else None
+        self.tables = {name: Table(self.out / "series" / f"{name}.csv", units, resume=step)
+                       for name, units in TABLES.items()}
+
+    def account(self, simulation):
+        """What a restart must know of the outputs as they are now."""
+        if self.main:
+            self._tell_gone(simulation)
+        frames = {kind: list(entries) for kind, entries in self.frames.items()}
+        return {"frames": frames, "next_frame": self.next_frame, "next_row": self.next_row, "name": self.name,
+                "particles": self.particles, "kernel": variant.chosen(), "versions": variant.versions()}
+
+    def secure(self):
+        """See all rows on the disk: a checkpoint relies on them."""
+        if self.main:
+            for table in self.tables.values():
+                table.secure()
+
+    def watch(self, simulation):
+        """Look at the simulation after a step; write what is due."""
+        if self.main:
+            self.folder.lock.beat()
+            self.progress.step(simulation.step_count, simulation.time, simulation.dt, simulation.active)
+        with simulation.timers("output"):
+            if simulation.time >= self.next_row:
+                self.next_row = next_multiple(simulation.time, self.case.output.series)
+                self._rows(simulation)
+            if simulation.time >= self.next_frame:
+                self.next_frame = next_multiple(simulation.time, self.case.output.frames)
+                self._frame(simulation)
+
+    def _rows(self, simulation):
+        rows = self.measure.rows(simulation)
+        if not self.main:
+            return
+        self._tell_gone(simulation)
+        for name, lines in rows.items():
+            for line in lines:
+                self.tables[name].row(simulation.step_count, simulation.time, *line)
+            self.tables[name].flush()
+
+    def _tell_gone(self, simulation):
+        for step, time, what, ident, *rest in simulation.gone:
+            self.tables["lost"].row(int(step), float(time), what, int(ident), *map(float, rest))
+            if what != "water":
+                self.progress.say(f"{what} has left the box: taken out at t = {time:.6g} s")
+        self.tables["lost"].flush()
+        simulation.gone.clear()
+
+    def fault(self, simulation):
+        """The frame of a run that goes wrong in this step."""
+        self._frame(simulation)
+
+    def _frame(self, simulation):
+        number, step, time = len(self.frames["water"]), simulation.step_count, simulation.time
+        p, at = simulation.domain.particles, simulation.near.fluid
+        name = f"frames/water_{number:06d}.vtkhdf"
+        self.frames["water"].append((name, time))
+        arrays = [np.stack([p.x[at], p.y[at], p.z[at]], 1), p.id[at], np.stack([p.u[at], p.v[at], p.w[at]], 1),
+                  p.p[at], p.surface[at], p.n[at] / simulation.scheme.lattice.number]
+        self._stream(name, simulation.fluid_count, arrays, time, step)
+        if self.main and len(simulation.bodies.mass):
+            name = f"frames/bodies_{number:06d}.vtkhdf"
+            self.frames["bodies"].append((name, time))
+            fields = {field: simulation.bodies.shown(field) for field in _BODY}
+            write_bodies(self.out / name, *simulation.bodies.surface(), fields, time, step)
+        if self.main:
+            self._write_indices()
+
+    def _write_indices(self):
+        for kind, entries in self.frames.items():
+            if entries:
+                write_index(self.out / f"{kind}.vtkhdf.series", entries)
+
+    def _stream(self, name, total, arrays, time, step):
+        """Write the water frame through rank 0, one rank's particles after another's: bounded memory."""
+        blocks = zip(*(self.comm.stream(array) for array in arrays), strict=True)
+        if not self.main:
+            for _ in blocks:
+                pass
+            return
+        with WaterFrame(self.out / name, total, _FIELDS, time, step) as frame:
+            for points, *values in blocks:
+                frame.append(points, dict(zip(_FIELDS, values, strict=True)))
+
+    def finish(self, simulation):
+        """Last frame and row if they are not written yet, then the account of the run."""
+        if self.frames["water"][-1][1] < simulation.time:
+            self._frame(simulation)
+        self._close("done", simulation)
+
+    def stopped(self, simulation, reason):
+        """End a run that has been stopped, with a checkpoint, before its end."""
+        go_on = f"parsim resume {shlex.quote(str(self.out))}"
+        self._close(f"stopped ({reason})", simulation, reason=reason, go_on=go_on)
+        if self.main:
+            self.progress.say(f"to go on: {go_on}")
+
+    def _close(self, words, simulation, **facts):
+        wall = clock.perf_counter() - simulation.timers.start
+        rows = self.measure.rows(simulation)
+        if not self.main:
+            return
+        self._tell_gone(simulation)
+        for table in self.tables.values():
+            table.close()
+        self.progress.close(words, simulation.step_count, simulation.time)
+        counts = dict(zip(list(TABLES["counts"])[2:], rows["counts"][0], strict=True))
+        cores = self.info["ranks"] * self.info["threads"]
+        self._end(words.split()[0], **facts, **{
+            "steps": simulation.step_count, "time": simulation.time, "wall_s": wall,
+            "lost": counts["lost"], "leaks": {k: counts[k] for k in ("in_walls", "in_bodies", "in_gate")},
+            "phases": dict(simulation.timers.seconds), "rebuilds": simulation.rebuilds,
+            "uneven": dict(zip(("mean", "most"), simulation.uneven, strict=True)),
+            "rate": {"active_particle_steps_per_s_per_core": self.progress.work / wall / cores,
+                     "active_particle_steps": self.progress.work, "all": counts["all"]},
+        })
+
+    def _end(self, status, **facts):
+        """Note how the run has ended."""
+        self.info |= {"status": status, **facts}
+        if self.info["pieces"] and "ended" not in self.info["pieces"][-1]:
+            self.info["pieces"][-1] |= {"ended": facts.get("reason", status)} | {
+                key: facts[key] for key in ("steps", "time", "wall_s") if key in facts}
+        self._write_info()
+
+    def _versions(self, simulation):
+        import numba
+
+        return {
+            "case_name": self.name, "ranks": self.comm.size, "threads": numba.get_num_threads(),
+            "host": platform.node(), "warnings": list(self.case.warnings()),
+            "kernel": variant.chosen(), "processor": os.environ.get("NUMBA_CPU_NAME", "host"),
+            "versions": {"python": platform.python_version(), "mpi": self.comm.library,
+                         **{name: version(name) for name in ("numpy", "numba", "h5py", "mpi4py")}},
+            "particles": self.particles,
+        }
+
+    def _write_info(self):
+        write_text(self.out / MARK, json.dumps(self.info, indent=1) + "\n")
+
+
+def _now():
+    return datetime.now(UTC).isoformat(timespec="seconds")

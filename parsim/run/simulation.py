@@ -1,0 +1,209 @@
+"""The time loop: what happens in a step, when lists are rebuilt, when things are written, when the run stops."""
+
+import math
+
+import numpy as np
+
+from parsim.machine.timers import Timers
+from parsim.output.checkpoint import Snapshot
+from parsim.run import guards
+from parsim.run.fill import columns, flow, water
+from parsim.run.setup import Models
+
+_COUNTERS = ("time", "step_count", "dt", "speed", "rebuilds")
+_MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
+
+
+class Simulation:
+    """One case in flight on this rank. `step` advances it; everything else looks at its attributes.
+
+    time, s; step_count; dt, s, of the last step; speed, m/s, largest of the water and of body surfaces; active: fluid
+    and awake boundary particles of all ranks; gone: on rank 0, rows of what has left the box and is not told of yet.
+    """
+
+    def __init__(self, case, comm, snapshot=None):
+        self.case, self.comm, self.timers = case, comm, Timers()
+        models = self.models = Models(case, comm, self.timers)
+        self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
+        self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
+        self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
+        self._uneven, self.gone = [0.0, 1.0, 0], []  # sum, most and number of looks
+        self._weight = math.hypot(*case.gravity)
+        self._damping = case.speed / case.depth if case.depth else 0.0
+        if snapshot is None:
+            self.domain.cut_evenly(*columns(case))
+            self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
+            self._balance(True)
+            self._rebuild(self.fluid)  # with cuts that know the walls and bodies too
+            self.rebuilds, self._uneven = 0, [0.0, 1.0, 0]
+            self._look()
+        else:
+            self._restore(snapshot)
+
+    @property
+    def fluid(self):
+        """This rank's fluid particles, without images: Particles, kept fields."""
+        return self.domain.particles.take(self.near.fluid)
+
+    @property
+    def uneven(self):
+        """Largest work of a rank over the mean before each rebuild: the mean of that, and the most."""
+        total, most, looks = self._uneven
+        return total / looks if looks else 1.0, most
+
+    def snapshot(self):
+        """All that a restart needs, before a step that rebuilds; called on all ranks together."""
+        lost, = self.domain.count(self.domain.lost)
+        account = {"lost": lost, "uneven": list(self._uneven)}
+        account |= {name: getattr(self, name) for name in _COUNTERS}
+        return Snapshot(self.fluid, self.bodies.kept(), self.contacts.kept(), account)
+
+    def _restore(self, snapshot):
+        """Go on from a snapshot: the rebuild that the step after it began with is made here."""
+        for name in _COUNTERS:
+            setattr(self, name, snapshot.account[name])
+        self._uneven = list(snapshot.account["uneven"])
+        self.domain.lost = snapshot.account["lost"] if self.comm.rank == 0 else 0
+        self.bodies.restore(snapshot.bodies)
+        self.contacts.restore(snapshot.contacts)
+        self.domain.cut_evenly(snapshot.water.x, np.ones(len(snapshot.water)))
+        self._rebuild(snapshot.water)
+
+    def rebuilds_next(self):
+        """Whether the next step begins with a rebuild; the same on every rank."""
+        return self._outrun(self._next_dt())
+
+    def _next_dt(self):
+        acceleration = max(self._weight, self.bodies.surface_acceleration())
+        return min(self.scheme.time_step(self.speed, acceleration), self.contacts.limit())
+
+    def step(self):
+        """Advance water and bodies by one time step."""
+        self.dt = dt = self._next_dt()
+        if error := guards.collapsed(self, dt):
+            raise error
+        if self._outrun(dt):
+            self._balance(self.rebuilds % self.case.run.balance_every == 0)
+            self._rebuild(self.fluid)
+        keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
+        force = self._half_step(dt)
+        self._move(force, dt, keep)
+        self.scheme.finish(self.domain, self.near, dt, self.speed)
+        if self.time < 0.0 <= self.time + dt:
+            flow(self.case, self.domain.particles)
+        self.time += dt
+        self.step_count += 1
+        self.since += 1
+        with self.domain.refreshing(*self.scheme.STATE):
+            self._look()
+
+    def _half_step(self, dt):
+        """Predict to the half step; accelerations of the water there; the load on the bodies, (bodies, 6)."""
+        p, near, time = self.domain.particles, self.near, self.time + 0.5 * dt
+        with self.timers("predict"):
+            self._place(*self.bodies.drifted(0.5 * dt), time)
+            self.scheme.predict(p, dt)
+        self.scheme.press(p, near)
+        load = None
+        if len(self.bodies.mass):
+            with self.timers("bodies"):
+                load = self._load(dt)
+        self.scheme.accelerate(self.domain, near, dt)
+        return load
+
+    def _load(self, dt):
+        """Load of the water on the bodies for the accelerations that it gives them, which the samples then have."""
+        pose, films, samples = self.bodies.drifted(0.5 * dt), self.models.films, self.models.samples
+        force, lever, response = self.scheme.react(self.domain, self.near, dt)
+        plate = self.gate.outline(self.time + 0.5 * dt) if self.gate else np.zeros(4)
+        added = films.loads(self.domain, self.near, plate, *pose)
+        load, rims, inertia = samples.loads(self.domain, self.near, force, response, pose[0], *added)
+        films.keep(*rims)
+        return samples.answer(self.domain.particles, self.near, *pose, load, inertia, lever, self.time)
+
+    def _move(self, load, dt, keep):
+        with self.timers("move"):
+            self.scheme.kick(self.domain.particles, self.near, dt, keep)
+            if load is not None:
+                self.models.samples.keep_out(self.domain.particles, self.near, *self.bodies.drifted(0.5 * dt))
+        with self.timers("contacts"):
+            if load is not None:
+                self.contacts.step(self.bodies, load, self.time, dt)
+                self.bodies.velocity *= keep
+                self.bodies.spin *= keep
+        with self.timers("bodies"):
+            self._place(self.bodies.position, self.bodies.quaternion, self.time + dt)
+
+    def _place(self, position, quaternion, time):
+        if self.gate:
+            self.models.gate_samples.place(self.domain.particles, time)
+        if len(self.bodies.mass):
+            self.models.samples.place(self.domain.particles, position, quaternion)
+
+    def _outrun(self, dt):
+        """Whether the lists would miss pairs within this step; the same on every rank."""
+        run = self.case.run
+        travel = self.moved + _MARGIN * dt * self.speed
+        opening = self.gate is not None and self.gate.closed(self.time) != self._closed
+        return 2.0 * travel > run.skin * self.case.spacing or self.since >= run.rebuild_at_most or opening
+
+    def _balance(self, move):
+        with self.timers("rebuild"):
+            self.domain.balance(self.near.work(self.domain), move)
+        total, most, looks = self._uneven
+        self._uneven = [total + self.domain.uneven, max(most, self.domain.uneven), looks + 1]
+
+    def _rebuild(self, fluid):
+        domain, near = self.domain, self.near
+        left = self._take_out()
+        with self.timers("rebuild"):
+            domain.rebuild(fluid, self.time)
+        with self.timers("neighbours"):
+            near.build(domain, self.models.reach)
+            if self.gate:
+                near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
+                self._closed = self.gate.closed(self.time)
+            if len(self.bodies.mass):
+                self.models.samples.find(domain, near)
+                self.models.films.find(domain)
+        with self.timers("sums"):
+            numbers = near.fluid.size + near.boundary.size, near.fluid.size, len(domain.gone)
+            self.active, self.fluid_count, gone = domain.count(*numbers)
+        if gone or left:
+            self._note_gone(left)
+        p, at = domain.particles, near.fluid
+        self._start = np.stack([p.x[at], p.y[at], p.z[at]])
+        self.moved, self._solid_moved, self.since = 0.0, 0.0, 0
+        self.rebuilds += 1
+
+    def _take_out(self):
+        """Take out the bodies that are wholly outside the grid, as the domain does with water: rows of `gone`."""
+        grid = self.domain.grid
+        endless = np.array(grid.periodic) | ~np.isin(range(3), self.case.axes)
+        low, high = np.where(endless, -np.inf, grid.low), np.where(endless, np.inf, grid.high)
+        at, rows = self.bodies.take_out(low, high, self.time)
+        return [(self.step_count + 1, self.time, f"body {self.bodies.names[b]}", b, *row)
+                for b, row in zip(at, rows, strict=True)]
+
+    def _note_gone(self, left):
+        """Collect, on rank 0, what the last rebuild has found outside the box."""
+        p = self.domain.gone
+        rows = np.concatenate([np.zeros((0, 7)), *self.comm.stream(np.stack([p.id, p.x, p.y, p.z, p.u, p.v, p.w], 1))])
+        rows = left + [(self.step_count + 1, self.time, "water", *row) for row in rows[np.argsort(rows[:, 0])]]
+        self.gone.extend(rows if self.comm.rank == 0 else ())
+        if self.case.run.outside == "stop":
+            raise guards.outside(self, rows)
+
+    def _look(self):
+        """Largest speed, and how far anything has moved since the lists were built."""
+        with self.timers("move"):
+            fastest, moved = self.scheme.extremes(self.domain.particles, self.near, self._start)
+        with self.timers("sums"):
+            fastest, moved = map(float, self.domain.max(fastest, moved))
+        soon = self.time + self.scheme.time_step(fastest)  # a gate that is about to rise counts
+        solid = max(self.bodies.surface_speed(), self.gate.velocity(soon) if self.gate else 0.0)
+        if not max(fastest, solid) < self.scheme.sound:
+            raise guards.runaway(self)
+        self._solid_moved += self.dt * solid
+        self.moved = max(moved, self._solid_moved)
+        self.speed = max(fastest, solid)

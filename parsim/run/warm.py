@@ -1,0 +1,146 @@
+"""Compiles the kernels once per machine, version and variant, in a process of its own, before any rank needs them.
+
+Numba's machine code of a reordered sum is not the same in the process that compiled it as in those that load it from
+the cache: the last bit of a result would tell a first run from a second, and one rank from another. So no run uses
+code that it compiled itself, and the ranks of a cold start do not compile the same thing side by side.
+"""
+
+import fcntl
+import json
+import os
+import pickle
+import subprocess
+import sys
+import time
+import zlib
+from contextlib import suppress
+from pathlib import Path
+
+from parsim.errors import InputError
+from parsim.launch import mpirun
+from parsim.machine import variant
+
+PATIENCE = 900.0  # s that a rank waits for another one's compiler
+_FOREIGN = ("OMPI_", "PMIX", "PMI_", "PRTE", "SLURM_")  # the compiler is no rank of the job
+_LOCAL = ("OMPI_COMM_WORLD_LOCAL_RANK", "SLURM_LOCALID", "MPI_LOCALRANKID")
+_CASE = {
+    "dimensions": 3, "spacing": 0.01, "box": {"max": [0.2, 0.06, 0.1]}, "run": {"until": 1.0},
+    "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.1, 0.06, 0.05]}]},
+    "gate": {"min_x": 0.1, "max_x": 0.105},
+    "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
+    "bodies": [{"name": name, "shape": {"size": [0.03, 0.04, 0.02]}, "density": 600.0, "material": "wood",
+                "position": [x, 0.03, 0.05]} for name, x in (("one", 0.03), ("two", 0.0605))],
+}  # fmt: skip
+_PERIODIC = {"box": {"max": [0.2, 0.06, 0.1], "faces": {"y_min": "periodic", "y_max": "periodic"}}, "gate": None,
+             "bodies": [], "output": {"gauges": [{"name": "one", "x": 0.05}]}}
+
+
+def prepare():
+    """Choose the kernel variant, if none is named yet, and return when its machine code is in the cache.
+
+    Rank 0 chooses for all. The first rank of each machine has compiled what is missing. Raises InputError for a variant
+    that this processor does not have, or other than that of the kernels which this process has loaded already.
+    """
+    from parsim.domain.comm import Comm
+
+    comm = Comm()
+    os.environ[variant.NAME] = variant.checked(comm.share(_chosen() if comm.rank == 0 else None))
+    variant.apply()
+    folder = os.environ.get("NUMBA_CACHE_DIR", "")
+    if Path(folder).name != variant.code():
+        raise InputError(f"kernel = {os.environ[variant.NAME]}: this process has loaded numba with other settings "
+                         "already; start parsim in a process of its own")
+    mark = variant.mark(folder)
+    if _whole(mark):
+        return
+    local = next((int(os.environ[name]) for name in _LOCAL if name in os.environ), mpirun.world()[0])
+    if local == 0:
+        _compile(mark)
+    start = time.monotonic()
+    while not _whole(mark):
+        if time.monotonic() - start > PATIENCE:
+            raise TimeoutError(f"{mark} has not appeared in {PATIENCE:g} s: is the kernel cache shared or writable?")
+        time.sleep(0.1)
+
+
+def _compile(mark):
+    """Compile everything, but for what another job has compiled while this one waited for it."""
+    with open(mark.parent / "lock", "w") as file:
+        with suppress(OSError):  # where the file system has no locks
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if not _whole(mark):
+            _compile_alone(mark)
+
+
+def _compile_alone(mark):
+    if mpirun.world()[0] == 0:
+        reason = "the cache is damaged" if mark.exists() else "once per version"
+        print(f"compiling the kernels: {reason}, about a minute", flush=True)
+    for path in _code(mark.parent):  # a compiler that was killed may have left half a file
+        path.unlink()
+    environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
+    # in a process group of its own: mpirun sends signals to all of a rank's
+    subprocess.run([sys.executable, "-P", "-m", "parsim.run.warm"], env=environment, check=True, process_group=0,
+                   preexec_fn=mpirun.die_with_parent)
+    sums = {str(path.relative_to(mark.parent)): _sum(path) for path in _code(mark.parent)}
+    draft = mark.with_suffix(f".{os.getpid()}")
+    draft.write_text(json.dumps(sums), encoding="utf-8")
+    draft.replace(mark)
+
+
+def _whole(mark):
+    """Whether the machine code that `mark` tells of is there as it was written."""
+    try:
+        sums = json.loads(mark.read_text(encoding="utf-8"))
+        return all(_sum(Path(mark.parent, name)) == sum for name, sum in sums.items())
+    except (OSError, ValueError, AttributeError):
+        return False
+
+
+def _sum(path):
+    """Checksum of a file of machine code; of an index, to which Numba may add, only whether it can be read."""
+    if path.suffix == ".nbc":
+        return zlib.crc32(path.read_bytes())
+    try:
+        with open(path, "rb") as file:
+            pickle.load(file)
+            pickle.loads(file.read())
+    except Exception:  # whatever a damaged pickle raises
+        return None
+    return 0
+
+
+def _code(folder):
+    return sorted(path for path in folder.rglob("*") if path.suffix in (".nbi", ".nbc"))
+
+
+def _chosen():
+    name = variant.chosen()
+    if name is None:
+        from parsim.run.probe import fastest
+
+        print("choosing the kernel variant: once per kind of processor", flush=True)
+        name = fastest()
+        variant.remember(name)
+    return name
+
+
+def exercise():
+    """Run a small case with everything in it for a few steps, which compiles and caches, or loads, every kernel."""
+    from parsim.case.model import parse
+    from parsim.domain.comm import Comm
+    from parsim.fluid.weights import WEIGHTS
+    from parsim.observe.measure import Measure
+    from parsim.run.simulation import Simulation
+
+    weights = [_CASE | {"water": _CASE["water"] | {"weight": name}} for name in WEIGHTS]
+    for data in (*weights, _CASE | _PERIODIC):
+        case = parse(data)
+        simulation = Simulation(case, Comm())
+        for _ in range(3):
+            simulation.step()
+        Measure(case, simulation).rows(simulation)
+
+
+if __name__ == "__main__":
+    exercise()
