@@ -6,5 +6,5 @@ set -euo pipefail
 source "$(dirname -- "${BASH_SOURCE[0]}")/../jobs/setup.sh"
 set_up pictures tests
 cd -- "$root"
-(($#)) || set -- --numprocesses 2 --dist loadfile
+(($#)) || set -- --numprocesses 2 --dist loadfile --no-loadscope-reorder
 exec "$python" -m pytest "$@"
