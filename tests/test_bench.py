@@ -64,9 +64,9 @@ def test_true_pairs_and_gathers_against_plain_sums():
     size, radius = np.array([1.0, 0.8, 0.6]), 0.25
     domain, near = listed(cloud(300, size, seed=3, walls=50), size, radius)
     p, count, total = domain.particles, np.zeros(350), np.zeros(350)
-    limits.true_pairs(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, 0.2**2, count)
-    fields = p.x, p.y, p.z, p.u, p.v, p.w, p.n, p.scale
-    limits.gathers(near.fluid, near.start, near.end, near.index, *fields, total)
+    limits.true_pairs(near.fluid, near.lists, p.place, 0.2**2, count)
+    fields = *p.place, *p.velocity, p.n, p.scale
+    limits.gathers(near.fluid, near.lists, *p.flow, p.n, p.scale, total)
     for i in near.fluid:
         row = near.index[near.start[i] : near.end[i]]
         r = np.sqrt((p.x[row] - p.x[i]) ** 2 + (p.y[row] - p.y[i]) ** 2 + (p.z[row] - p.z[i]) ** 2)

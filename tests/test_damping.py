@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 from clouds import lattice, listed
-from test_sweeps import sweep
+from test_sweeps import continuity, growth_of, sweep
 
 from parsim.fluid.reference import Lattice
-from parsim.fluid.wcmps import sweeps, updates
+from parsim.fluid.wcmps import updates
 from parsim.fluid.weights import WEIGHTS
+from parsim.particles.state import TWICE_VISCOUS, VISCOUS
 
 SPACING = 0.1
 
@@ -28,14 +29,12 @@ def made(cloud, name, periodic=True):
 
 def twofold(domain, near, scheme, velocity):
     """Viscous sums and twofold viscous sums, (n, 3) each, of the fluid with the velocity (particles, 3)."""
-    p, nothing = domain.particles, np.zeros((4, len(domain.particles)))
+    p = domain.particles
     p.u[:], p.v[:], p.w[:] = velocity.T
     sweep(p, near, scheme)
     domain.refresh("bx", "by", "bz")
-    sweeps.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
-                       p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                       3.0, p.body, *nothing, p.ex, p.ey, p.ez, tuple(np.zeros((5, len(p)))))
-    return [np.stack(fields, 1)[near.fluid] for fields in ((p.bx, p.by, p.bz), (p.ex, p.ey, p.ez))]
+    p.ex[:], p.ey[:], p.ez[:] = continuity(p, near, scheme.weight, growth_of(scheme, 1.0)).twice
+    return [np.stack(p.vectors(names), 1)[near.fluid] for names in (VISCOUS, TWICE_VISCOUS)]
 
 
 def noise(p, seed):
@@ -73,7 +72,7 @@ def test_damping_takes_energy_from_whatever_moves(box, damping):
         before = math.fsum((velocity[near.fluid] ** 2).ravel())
         product = math.fsum((velocity[near.fluid] * twice).ravel())
         assert product == pytest.approx(math.fsum((once**2).ravel()), rel=1e-10), "the sums are symmetric"
-        updates.damp(near.fluid, share_taken(scheme, damping), p.ex, p.ey, p.ez, p.u, p.v, p.w)
+        updates.damp(near.fluid, share_taken(scheme, damping), p.vectors(TWICE_VISCOUS), p.velocity)
         after = math.fsum((np.stack([p.u, p.v, p.w], 1)[near.fluid] ** 2).ravel())
         left.append(after / before)
     assert max(left) < 1.0 and min(left[:3]) > 0.0

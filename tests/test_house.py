@@ -96,6 +96,23 @@ def reductions(function):
                         yield f"line {node.lineno}: {node.target.id} is summed over a prange"
 
 
+def lost_writes(function):
+    """What numba drops: inside a prange, writes through a tuple, or to names that a parameter was unpacked into."""
+    given, unpacked = {arg.arg for arg in function.args.args}, set()
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Tuple) and isinstance(
+            node.value, ast.Name | ast.Attribute
+        ):
+            unpacked |= {_last(target) for target in node.targets[0].elts}
+    for loop in ast.walk(function):
+        if isinstance(loop, ast.For) and isinstance(loop.iter, ast.Call) and _last(loop.iter.func) == "prange":
+            for node in ast.walk(loop):
+                if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
+                    root = node.value
+                    if isinstance(root, ast.Attribute) and _last(root.value) in given or _last(root) in unpacked:
+                        yield f"line {node.lineno}: {_last(root)}[...] is written, and lost"
+
+
 def _targets(assign):
     for target in assign.targets:
         yield from target.elts if isinstance(target, ast.Tuple) else [target]
@@ -121,6 +138,9 @@ def test_the_rules_can_be_broken():
     assert [fault.split(": ")[1] for fault in arithmetic_faults(weight)] == ["exp()", "**"]
     assert sorted(fault.split(": ")[1] for fault in arithmetic_faults(function)) == ["**", "@", "exp()", "sum()"]
     assert list(reductions(function)) == ["line 8: t is summed over a prange"]
+    (lost,) = kernels(ast.parse("@each\ndef f(p, q):\n  x, y = p\n  z = q.z\n  for i in prange(9):\n    x[i] = z[i]\n"
+                               "    z[i] = y[i]\n    q.y[i] += 1\n"))
+    assert list(lost_writes(lost)) == ["line 6: x[...] is written, and lost", "line 8: y[...] is written, and lost"]
     assert own(ast.parse("from parsim import comm\nfrom parsim.fluid.weights import w")) == {"comm", "fluid"}
 
 
@@ -144,7 +164,7 @@ def test_kernels_keep_their_bits(path):
     strict = name(path).removeprefix("parsim/").startswith(STRICT)
     faults = []
     for function in kernels(tree(path)):
-        faults += [f"{function.name} {fault}" for fault in reductions(function)]
+        faults += [f"{function.name} {fault}" for fault in (*reductions(function), *lost_writes(function))]
         faults += [f"{function.name} {fault}" for fault in arithmetic_faults(function) if strict]
     assert not faults
 

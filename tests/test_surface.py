@@ -5,10 +5,12 @@ import pytest
 from clouds import PLAIN, lattice, listed
 from test_sweeps import sweep
 
-from parsim.fluid import surface
+from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.weights import WEIGHTS
 from parsim.particles.state import DETACHED, FLUID, INTERNAL, SURFACE, VICINITY, WALL, make_id
+
+DOWN = (0.0, 0.0, -1.0)
 
 
 def found(domain, near, scheme):
@@ -16,8 +18,8 @@ def found(domain, near, scheme):
     p = domain.particles
     p.n[:] = scheme.number
     p.c[:] = sweep(p, near, scheme)
-    surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, scheme.spacing, scheme.lowest,
-                     scheme.highest, p.surface, p.nx, p.ny, p.nz)
+    bounds = surface.Bounds(scheme.spacing, scheme.lowest, scheme.highest)
+    surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.normal)
     domain.refresh("surface", "nx", "ny", "nz", "c")
     return domain, near, scheme
 
@@ -25,10 +27,19 @@ def found(domain, near, scheme):
 def shift(domain, near, scheme, pull=0.1, slope=0.0):
     """Shift the fluid, 0.004 m2 times the sums that the fields ax, ay, az hold, at most 0.01 m."""
     p = domain.particles
-    surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz,
-                  p.c, p.scale, p.body, domain.near(SURFACE, "surface"), scheme.weight, scheme.radius, 0.21**2, 0.004,
-                  0.01, scheme.number, scheme.own, scheme.whole, scheme.cut, 0.0, 0.0, -1.0, slope, pull, 0.005, p.ax,
-                  p.ay, p.az, p.surface, p.n)
+    at = near.fluid
+    surface.clamp(at, p.surface, scheme.number, 0.005, p.n)
+    surface.mark(at, near.lists, p.place, scheme.weight, domain.near(SURFACE, "surface"), p.surface, p.normal)
+    recovery.recover(at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), scheme.weight,
+                     recovering(scheme, pull), p.n)
+    constants = shifting.Shifting(0.004, 0.01, *DOWN, scheme.number * slope)
+    shifting.shift(at, p.surface, p.normal, constants, p.acceleration, p.n)
+
+
+def recovering(scheme, pull):
+    """Constants of the recovery by the share `pull`."""
+    return recovery.Recovery(scheme.radius**2, 0.21**2, scheme.number, scheme.own, scheme.whole,
+                             scheme.cut, *DOWN, pull)
 
 
 @pytest.fixture(params=WEIGHTS)
@@ -129,8 +140,7 @@ def test_the_packing_makes_up_for_what_a_surface_cuts_off(slab):
     inside = near.fluid[(p.z[near.fluid] > 0.1) & (p.z[near.fluid] < 0.5)]
     assert p.c[inside].min() < 0.98
     for i in inside:
-        given = near.start[i], near.middle[i], near.end[i], near.index
-        fast = scheme.own + surface.packing(i, *given, p.x, p.y, p.z, p.scale, scheme.weight, scheme.cut)
+        fast = scheme.own + recovery.packing(i, near.lists, p.place, p.scale, scheme.weight, scheme.cut)
         assert fast == pytest.approx(packed(p, near, i, scheme) * scheme.whole, rel=1e-12)
         assert fast == pytest.approx(scheme.whole, rel=2e-4)
 

@@ -7,9 +7,10 @@ import pytest
 from clouds import PLAIN, cloud, lattice, listed
 
 from parsim.fluid.reference import Lattice
-from parsim.fluid.wcmps import sweeps, updates
+from parsim.fluid.wcmps import sweeps, tables, updates
 from parsim.fluid.weights import WEIGHTS
-from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY
+from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY, VISCOUS
+from parsim.particles.tables import Traceless, Vectors
 
 SIZE, RE = np.array([1.3, 0.9, 0.7]), 0.2
 
@@ -55,7 +56,7 @@ def row(p, near, i, part, weight):
 
 def test_seventh_roots_invert_the_state():
     y = np.array([0.0, 1e-6, 0.05, 0.7])
-    assert sweeps.seventh_roots(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
+    assert updates.seventh_roots(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
 
 
 def test_the_half_step_moves_fluid_and_gives_it_the_pressure_of_the_state():
@@ -65,7 +66,8 @@ def test_the_half_step_moves_fluid_and_gives_it_the_pressure_of_the_state():
     state = np.array([INTERNAL, INTERNAL, VICINITY, SURFACE, DETACHED, INTERNAL], np.uint8)
     n, p = before.copy(), np.full(6, 9.0)
     x, y, z = (np.full(6, start) for start in (1.0, 2.0, 3.0))
-    sweeps.predict(kind, state, velocity, 2 * velocity, -velocity, rate, 0.1, 1.0, 1000.0, x, y, z, n, p)
+    flow, place = Vectors(velocity, 2 * velocity, -velocity), Vectors(x, y, z)
+    updates.predict(kind, state, flow, rate, (0.1, 1.0, 1000.0), place, n, p)
     moved = np.where(kind == 0, 0.1 * velocity, 0.0)
     assert np.stack([x, y, z]) == pytest.approx(np.stack([1.0 + moved, 2.0 + 2 * moved, 3.0 - moved]), rel=1e-14)
     assert n == pytest.approx([1.0, 1.01, 0.99, 1.01, 1.01, 1.01], rel=1e-14)
@@ -78,9 +80,8 @@ def test_momentum_sweep(mixed, weight):
     close, push, drag, hit, dt, own, whole = 0.1, 0.3, 0.7, 2.0, 0.05, 0.6, 50.0
     p.ax[near.boundary] = 3.0
     c, b = np.zeros(len(p)), np.zeros((3, len(p)))
-    sweeps.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                     p.isotropy, p.scale, WEIGHTS[weight].of_radius(RE), own, whole, close**2, push, drag, hit, dt,
-                     p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz, *b)
+    forces = tables.Forces(own, whole, close**2, push, drag, hit, dt, 1.0)
+    momentum(p, near, WEIGHTS[weight].of_radius(RE), forces, tables.Around(c, p.normal, Vectors(*b)))
     struck, t = 0, corrections(p)
     for i in near.fluid[::7]:
         a, normal, viscous, total = np.zeros(3), np.zeros(3), np.zeros(3), own
@@ -113,10 +114,7 @@ def test_continuity_sweep(mixed, weight):
     flow, spread, h, crowd, close = 0.4, 0.9, (0.1, -0.2, 0.3), 30.0, 0.12
     p.body[near.boundary[::2]] = 0
     n0, shares = np.quantile([filled(p, near, i, weight) for i in near.fluid[::7]], 0.5, method="lower") / 0.98, set()
-    found = tuple(np.zeros((5, len(p))))
-    sweeps.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
-                       p.bx, p.by, p.bz, p.scale, WEIGHTS[weight].of_radius(RE), n0, flow, spread, *h, crowd, close,
-                       3.0, p.body, p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez, found)
+    found = continuity(p, near, WEIGHTS[weight].of_radius(RE), tables.Growth(n0, flow, spread, *h, crowd, close, 3.0))
     sums = np.stack([p.bx, p.by, p.bz], 1)
     for i in near.fluid[::7]:
         rate, apart, twofold, m = 0.0, np.zeros(3), np.zeros(3), np.zeros((3, 3))
@@ -129,15 +127,15 @@ def test_continuity_sweep(mixed, weight):
             if part == "fluid":
                 rate += spread * (w * ((p.n[j] - p.n[i]) / n0 - d @ h)).sum()
                 twofold = ((g / r**2 * ((sums[j] - sums[i]) * d).sum(1))[:, None] * d).sum(0)
-        assert p.rate[i] == pytest.approx(rate, rel=1e-9, abs=1e-9)
-        assert [p.ax[i], p.ay[i], p.az[i]] == pytest.approx(apart, rel=1e-9, abs=1e-9)
-        assert [p.ex[i], p.ey[i], p.ez[i]] == pytest.approx(twofold, rel=1e-9, abs=1e-9)
+        assert found.rate[i] == pytest.approx(rate, rel=1e-9, abs=1e-9)
+        assert [field[i] for field in found.apart] == pytest.approx(apart, rel=1e-9, abs=1e-9)
+        assert [field[i] for field in found.twice] == pytest.approx(twofold, rel=1e-9, abs=1e-9)
         exact = np.eye(3) - 3.0 * m / np.trace(m)
         share = np.clip((filled(p, near, i, weight) / n0 - 0.97) / 0.02, 0.0, 1.0)
         shares.add(share)
         exact *= min(share, sweeps.LARGEST / np.sqrt((exact**2).sum()))
         five = exact[[0, 0, 0, 1, 2], [0, 1, 2, 2, 2]]
-        assert [field[i] for field in found] == pytest.approx(five, rel=1e-9, abs=1e-12)
+        assert [field[i] for field in found.isotropy] == pytest.approx(five, rel=1e-9, abs=1e-12)
     assert {0.0, 1.0} < shares, "some at the surface, some inside, some between"
 
 
@@ -147,8 +145,8 @@ def test_boundary_pressure_sweep(mixed, weight):
     p.ax[near.boundary] = 0.5
     p.body[near.boundary[::2]] = 0
     pressure, sucked = p.p.copy(), [0, 0]
-    sweeps.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, p.ax, p.ay,
-                              p.az, *g, rho, WEIGHTS[weight].of_radius(RE), pressure)
+    sweeps.boundary_pressure(near.boundary, near.lists, p.body, p.place, p.acceleration, WEIGHTS[weight].of_radius(RE),
+                             (*g, rho), pressure)
     acceleration = np.stack([p.ax, p.ay, p.az], 1)
     for i in near.boundary:
         j, d, _, r, w, _ = row(p, near, i, "fluid", weight)
@@ -162,16 +160,13 @@ def test_boundary_pressure_sweep(mixed, weight):
 
 def test_what_bodies_get_is_what_the_water_lost(mixed, weight):
     p, near = mixed
-    of_radius, close2, push, hit, dt = WEIGHTS[weight].of_radius(RE), 0.1**2, 0.3, 2.0, 0.05
+    of_radius, forces = WEIGHTS[weight].of_radius(RE), tables.Forces(1.0, 50.0, 0.1**2, 0.3, 0.7, 2.0, 0.05, 3.0)
     acceleration = np.random.default_rng(4).normal(size=(3, len(p)))
-    back, a = np.zeros((near.boundary.size, 3)), np.stack([acceleration, acceleration])
-    sweeps.reaction(near.boundary, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *acceleration,
-                     p.p, p.isotropy, p.scale, of_radius, 3.0, close2, push, hit, dt, back, np.empty_like(back),
-                     np.empty((len(back), 6)))
-    nothing = np.zeros((7, len(p)))
+    back, a = reaction(p, near, of_radius, forces, acceleration, p.p).force, np.stack([acceleration, acceleration])
     for k, ends in enumerate((near.end, near.middle)):
-        sweeps.momentum(near.fluid, near.start, near.middle, ends, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                         p.isotropy, p.scale, of_radius, 1.0, 50.0, close2, push, 0.7, hit, dt, *a[k], *nothing)
+        p.ax[:], p.ay[:], p.az[:] = acceleration
+        momentum(p, near, of_radius, forces, lists=near.lists._replace(end=ends))
+        a[k] = p.acceleration
     lost = [math.fsum((a[0][axis] - a[1][axis])[near.fluid]) for axis in range(3)]
     got = [math.fsum(back[:, axis]) for axis in range(3)]
     assert np.abs(got).max() > 1.0
@@ -181,18 +176,15 @@ def test_what_bodies_get_is_what_the_water_lost(mixed, weight):
 def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
     """The change of load and pressure is that of `response` and `lever`, and the response takes energy only."""
     p, near = mixed
-    rho, (push, hit, dt) = 3.0, (0.3, 2.0, 0.05)
-    of_radius, gravity = WEIGHTS[weight].of_radius(RE), (0.0, 0.0, -9.0)
+    of_radius, forces = WEIGHTS[weight].of_radius(RE), tables.Forces(0.0, 0.0, 0.1**2, 0.3, 0.0, 2.0, 0.05, 3.0)
     at, change = near.boundary, np.array([0.7, -1.1, 0.4])
     p.body[at] = 0
     found = []
     for more in (0.0 * change, change):
         a, pressure = np.tile(more[:, None], len(p)), p.p.copy()
-        sweeps.boundary_pressure(at, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, *a, *gravity, rho,
-                                  of_radius, pressure)
-        out, lever, response = np.empty((at.size, 3)), np.empty((at.size, 3)), np.empty((at.size, 6))
-        sweeps.reaction(at, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, *a, pressure,
-                         p.isotropy, p.scale, of_radius, rho, 0.1**2, push, hit, dt, out, lever, response)
+        sweeps.boundary_pressure(at, near.lists, p.body, p.place, Vectors(*a), of_radius,
+                                 (0.0, 0.0, -9.0, 3.0), pressure)
+        out, lever, response = reaction(p, near, of_radius, forces, a, pressure)
         found.append((out, pressure[at], lever, response))
     (before, low, lever, response), (after, high, _, _) = found
     matrix = response[:, [[0, 1, 2], [1, 3, 4], [2, 4, 5]]]
@@ -204,12 +196,38 @@ def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
 
 def sweep(p, near, scheme):
     """Pair accelerations of all particles and their viscous sums with the constants of a lattice; concentrations."""
-    c = np.zeros(len(p))
-    sweeps.momentum(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                     p.isotropy, p.scale, scheme.weight, scheme.own, scheme.whole, 0.0,
-                     scheme.dimensions / scheme.number, 1.0, 0.0, 0.0, p.ax, p.ay, p.az, c, p.nx, p.ny, p.nz,
-                     p.bx, p.by, p.bz)
-    return c
+    push = scheme.dimensions / scheme.number
+    return momentum(p, near, scheme.weight, tables.Forces(scheme.own, scheme.whole, 0.0, push, 1.0, 0.0, 0.0, 1.0))
+
+
+def momentum(p, near, weight, forces, around=None, lists=None):
+    """The momentum sweep over all fluid into the fields of the particles; their concentrations."""
+    around = around or tables.Around(np.zeros(len(p)), p.normal, p.vectors(VISCOUS))
+    sweeps.momentum(near.fluid, lists or near.lists, p.flow, tables.Pressures(p.p, p.scale, p.isotropy), weight,
+                    forces, p.acceleration, around)
+    return around.concentration
+
+
+def reaction(p, near, weight, forces, acceleration, pressure):
+    """What the boundary, whose samples have the acceleration (3, particles), gives back to the water."""
+    out = tables.Reaction(*(np.empty((near.boundary.size, k)) for k in (3, 3, 6)))
+    sweeps.reaction(near.boundary, near.lists, p.flow, Vectors(*acceleration),
+                    tables.Pressures(pressure, p.scale, p.isotropy), weight, forces, out)
+    return out
+
+
+def continuity(p, near, weight, growth):
+    """What the continuity sweep finds of the fluid."""
+    rate, *rest = np.zeros((12, len(p)))
+    out = tables.Change(rate, Vectors(*rest[:3]), Vectors(*rest[3:6]), Traceless(*rest[6:]))
+    sweeps.continuity(near.fluid, near.lists, p.flow, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
+                      weight, growth, out)
+    return out
+
+
+def growth_of(scheme, flow):
+    """Constants of the continuity sweep with the divergence times `flow`, without diffusion, shifting and gravity."""
+    return tables.Growth(scheme.number, flow, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0)
 
 
 def test_pair_forces_add_up_to_nothing(weight):
@@ -242,11 +260,9 @@ def wave_error(count, weight):
     p.u[:] = 0.0
     sweep(p, near, scheme)
     p.u[:] = velocity
-    sweeps.continuity(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
-                       p.bx, p.by, p.bz, p.scale, scheme.weight, scheme.number, 3 / scheme.number, 0.0, 0.0, 0.0, 0.0,
-                       0.0, 0.0, 3.0, p.body, p.rate, *np.zeros((6, len(p))), tuple(np.zeros((5, len(p)))))
+    rate = continuity(p, near, scheme.weight, growth_of(scheme, 3.0 / scheme.number)).rate
     exact = k * np.cos(k * p.x[near.fluid])
-    return [np.abs(field[near.fluid] + exact).max() / k for field in (p.ax, p.rate)]
+    return [np.abs(field[near.fluid] + exact).max() / k for field in (p.ax, rate)]
 
 
 def test_gradient_and_divergence_are_of_second_order_on_a_lattice(weight):
@@ -257,8 +273,9 @@ def test_gradient_and_divergence_are_of_second_order_on_a_lattice(weight):
 
 def test_extremes_tell_of_what_is_not_finite():
     start, zero, bad = np.zeros((3, 2)), np.zeros(2), np.array([0.0, math.nan])
-    assert updates.extremes(np.arange(2), zero, bad, zero, zero, zero, zero, start)[0] == math.inf
-    assert updates.extremes(np.arange(2), zero + 2.0, zero, zero, zero, zero + 3.0, zero, start) == (4.0, 9.0)
+    assert updates.extremes(np.arange(2), Vectors(zero, bad, zero), Vectors(zero, zero, zero), start)[0] == math.inf
+    velocity, place = Vectors(zero + 2.0, zero, zero), Vectors(zero, zero + 3.0, zero)
+    assert updates.extremes(np.arange(2), velocity, place, start) == (4.0, 9.0)
 
 
 @pytest.mark.parametrize("strain", [[[0.1, 0.0, 0.0], [0.0, -0.05, 0.0], [0.0, 0.0, -0.05]],

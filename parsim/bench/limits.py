@@ -5,13 +5,18 @@ import time
 import numpy as np
 
 from parsim.fluid.wcmps import sweeps as kernels
+from parsim.fluid.wcmps import tables
 from parsim.machine.jit import prange, rows
-from parsim.particles.state import FLUID
+from parsim.particles.state import FLUID, VISCOUS
+from parsim.particles.tables import Traceless, Vectors
 
 
 @rows
-def gathers(at, start, end, index, x, y, z, u, v, w, n, p, out):
+def gathers(at, lists, place, velocity, n, p, out):
     """Nothing but the reading of eight fields of all neighbours: out (particles,) is their sum."""
+    start, end, index = lists.start, lists.end, lists.index
+    x, y, z = place
+    u, v, w = velocity
     for row in prange(at.size):
         i = at[row]
         total = 0.0
@@ -22,8 +27,10 @@ def gathers(at, start, end, index, x, y, z, u, v, w, n, p, out):
 
 
 @rows
-def true_pairs(at, start, end, index, x, y, z, radius2, out):
+def true_pairs(at, lists, place, radius2, out):
     """Number of listed neighbours within the support: out (particles,)."""
+    start, end, index = lists.start, lists.end, lists.index
+    x, y, z = place
     for row in prange(at.size):
         i = at[row]
         count = 0
@@ -41,30 +48,32 @@ def sweeps(simulation, calls):
     """
     domain, near, scheme = simulation.domain, simulation.near, simulation.scheme
     p, lattice = domain.particles, scheme.lattice
-    lists = near.fluid, near.start, near.middle, near.end
-    place, flow = (p.x, p.y, p.z), (p.u, p.v, p.w)
+    at, lists, place, velocity = near.fluid, near.lists, p.place, p.velocity
     count = np.zeros(len(p))
-    true_pairs(near.fluid, near.start, near.end, near.index, *place, lattice.radius**2, count)
+    true_pairs(at, lists, place, lattice.radius**2, count)
     pairs = int(count.sum())
     listed = int((near.end - near.start)[near.fluid].sum())
-    close = _neighbours_in_cache(near, p)
-    out = [np.zeros(len(p)) for _ in range(10)]
+    close = lists._replace(index=_neighbours_in_cache(near, p))
+    out = [np.zeros(len(p)) for _ in range(12)]
+    one, two, three = (Vectors(*out[k : k + 3]) for k in (0, 3, 6))
+    forces = tables.Forces(lattice.own, lattice.whole, scheme.close2, 1.0, 1.0, 1.0, 1.0, 1.0)
+    growth = tables.Growth(lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing,
+                            float(lattice.dimensions))
 
-    def momentum(index):
-        kernels.momentum(*lists, index, *place, *flow, p.p, p.isotropy, p.scale, lattice.weight, lattice.own,
-                         lattice.whole, scheme.close2, 1.0, 1.0, 1.0, 1.0, *out)
+    def momentum(lists):
+        kernels.momentum(at, lists, p.flow, tables.Pressures(p.p, p.scale, p.isotropy), lattice.weight, forces, one,
+                         tables.Around(out[9], two, three))
 
-    def continuity(index):
-        kernels.continuity(*lists, index, *place, *flow, p.n, p.bx, p.by, p.bz, p.scale, lattice.weight,
-                           lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing,
-                           float(lattice.dimensions), p.body, *out[:7], tuple(np.zeros((5, len(p)))))
+    def continuity(lists):
+        kernels.continuity(at, lists, p.flow, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS), lattice.weight,
+                           growth, tables.Change(out[0], two, three, Traceless(out[1], out[2], *out[9:])))
 
     works = {
-        "momentum": lambda: momentum(near.index),
-        "continuity": lambda: continuity(near.index),
+        "momentum": lambda: momentum(lists),
+        "continuity": lambda: continuity(lists),
         "momentum_in_cache": lambda: momentum(close),
         "continuity_in_cache": lambda: continuity(close),
-        "gathers": lambda: gathers(near.fluid, near.start, near.end, near.index, *place, *flow, p.n, p.p, out[0]),
+        "gathers": lambda: gathers(at, lists, place, velocity, p.n, p.p, out[0]),
         "lists": lambda: near.build(domain, simulation.models.reach),
     }
     return {name: 1e9 * _least(work, calls) / pairs for name, work in works.items()} | {"listed": listed / pairs}

@@ -11,6 +11,7 @@ from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.cells import REACH
 from parsim.particles.sight import cut_rows
 from parsim.particles.state import FLUID, SURFACE
+from parsim.particles.tables import Lists
 
 _TALL = 2  # cells of a block, one above the other
 _BLOCKS_PER_TASK = 32
@@ -33,6 +34,11 @@ class Neighbours:
         self.start = self.middle = self.end = np.zeros(0, np.int64)
         self.index = np.zeros(0, np.uint32)
         self.fluid = self.inner = self.border = self.boundary = self.body = np.zeros(0, np.int64)
+
+    @property
+    def lists(self):
+        """The lists as kernels take them."""
+        return Lists(self.start, self.middle, self.end, self.index)
 
     def build(self, domain, radius):
         """Fill the lists of the owned particles of a `domain` that has just been rebuilt, up to `radius` m."""

@@ -7,10 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from parsim.particles.tables import Flow, Traceless, Vectors
+
 FLUID, BODY, GATE_UP, GATE_DOWN, WALL = 0, 1, 2, 3, 4
 INTERNAL, VICINITY, SURFACE, DETACHED = 0, 1, 2, 3
 POSITION = ("x", "y", "z")
 VELOCITY = ("u", "v", "w")
+ACCELERATION = ("ax", "ay", "az")
+NORMAL = ("nx", "ny", "nz")
+VISCOUS = ("bx", "by", "bz")
+TWICE_VISCOUS = ("ex", "ey", "ez")
 ISOTROPY = ("txx", "txy", "txz", "tyz", "tzz")
 _ID_BITS = 56
 
@@ -83,10 +89,39 @@ class Particles:
     def __len__(self):
         return self.id.size
 
+    def vectors(self, names):
+        """The three fields of one vector, such as `POSITION`, as kernels take them."""
+        return Vectors(*(getattr(self, name) for name in names))
+
+    @property
+    def place(self):
+        """Where the particles are, m."""
+        return self.vectors(POSITION)
+
+    @property
+    def velocity(self):
+        """How fast they go, m/s."""
+        return self.vectors(VELOCITY)
+
+    @property
+    def flow(self):
+        """Place and velocity."""
+        return Flow(self.place, self.velocity)
+
+    @property
+    def acceleration(self):
+        """How fast that changes by pairs, m/s2; from one step to the next kept for what is solid only."""
+        return self.vectors(ACCELERATION)
+
+    @property
+    def normal(self):
+        """What points out of the water where it has a surface, and is zero inside."""
+        return self.vectors(NORMAL)
+
     @property
     def isotropy(self):
-        """The fields of the isotropic gradient, as kernels take them."""
-        return tuple(getattr(self, name) for name in ISOTROPY)
+        """The fields of the isotropic gradient."""
+        return Traceless(*(getattr(self, name) for name in ISOTROPY))
 
     def take(self, index):
         """The particles at `index` (any numpy index), kept fields only."""

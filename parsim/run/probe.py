@@ -35,8 +35,9 @@ def _seconds():
     import numpy as np
 
     from parsim.fluid import weights
-    from parsim.fluid.wcmps import sweeps
+    from parsim.fluid.wcmps import sweeps, tables
     from parsim.machine.jit import FAST, njit
+    from parsim.particles.tables import Flow, Lists, Traceless, Vectors
 
     axis = np.arange(_EDGE, dtype=float)
     x, y, z = (a.ravel() for a in np.meshgrid(axis, axis, axis, indexing="ij"))
@@ -50,9 +51,12 @@ def _seconds():
     start[at] = np.arange(at.size) * step.size
     end[at] = start[at] + step.size
     fields = np.random.default_rng(1).uniform(1.0, 2.0, (8, x.size))
-    arguments = (at, start, end, end, index, x, y, z, *fields, weights.WEIGHTS["wendland_c4"].of_radius(3.1), 1.0, 1.0,
-                 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 3.0, np.full(x.size, -1, np.int32), *np.zeros((7, x.size)),
-                 tuple(np.zeros((5, x.size))))
+    growth = tables.Growth(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 3.0)
+    rate, *out = np.zeros((12, x.size))
+    arguments = (at, Lists(start, end, end, index), Flow(Vectors(x, y, z), Vectors(*fields[:3])),
+                 tables.Density(*fields[3:5], np.full(x.size, -1, np.int32)), Vectors(*fields[5:]),
+                 weights.WEIGHTS["wendland_c4"].of_radius(3.1), growth,
+                 tables.Change(rate, Vectors(*out[:3]), Vectors(*out[3:6]), Traceless(*out[6:])))
     sweep = njit(sweeps.continuity.py_func, error_model="numpy", nogil=True, fastmath=FAST)
     times = []
     for _ in range(_CALLS):

@@ -10,11 +10,12 @@ import math
 
 import numpy as np
 
-from parsim.fluid import surface
+from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
-from parsim.fluid.wcmps import sweeps, updates
+from parsim.fluid.wcmps import sweeps, tables, updates
 from parsim.machine.timers import Timers
-from parsim.particles.state import ISOTROPY, SURFACE
+from parsim.particles.state import ISOTROPY, NORMAL, SURFACE, TWICE_VISCOUS, VELOCITY, VISCOUS
+from parsim.particles.tables import Vectors
 
 _BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
 _CLOSE, _CROWD = 0.8, 100.0  # spacings below which shifting pushes harder, and by how much more for each spacing less
@@ -45,7 +46,8 @@ class WCMPS:
         self._whole = lattice.whole / (1.0 + 0.5 * gravity * case.depth / self.sound**2)
         self.recovery = 2.0 * water.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self.restitution = water.restitution
-        self._down, self._slope = np.array(case.gravity) / (gravity or 1.0), gravity / self.sound**2
+        self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
+        self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
         self.close2 = (water.collision_distance * case.spacing) ** 2
 
     def time_step(self, speed, acceleration=0.0):
@@ -68,18 +70,18 @@ class WCMPS:
 
     def number_at(self, pressure):
         """Number density (n,) at pressures (n,), Pa >= 0: the inverse state."""
-        return self.lattice.number * sweeps.seventh_roots(pressure / self.stiffness)
+        return self.lattice.number * updates.seventh_roots(pressure / self.stiffness)
 
     def predict(self, p, dt):
         """Fluid to the half step, halo included: r, n, then the pressure."""
-        sweeps.predict(p.kind, p.surface, p.u, p.v, p.w, p.rate, 0.5 * dt, self.lattice.number, self.stiffness, p.x,
-                        p.y, p.z, p.n, p.p)
+        state = 0.5 * dt, self.lattice.number, self.stiffness
+        updates.predict(p.kind, p.surface, p.velocity, p.rate, state, p.place, p.n, p.p)
 
     def press(self, p, near):
         """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
-            sweeps.boundary_pressure(near.boundary, near.start, near.middle, near.index, p.body, p.x, p.y, p.z, p.ax,
-                                      p.ay, p.az, *self.gravity, self.density, self.lattice.weight, p.p)
+            sweeps.boundary_pressure(near.boundary, near.lists, p.body, p.place, p.acceleration,
+                                     self.lattice.weight, (*self.gravity, self.density), p.p)
 
     def accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
@@ -88,16 +90,13 @@ class WCMPS:
             self._momentum(p, near, near.inner, dt)
         self._momentum(p, near, near.border, dt)
         with self.timers("surface"):
-            surface.classify(near.fluid, near.start, near.end, near.index, p.x, p.y, p.z, p.c, lattice.spacing,
-                             lattice.lowest, lattice.highest, p.surface, p.nx, p.ny, p.nz)
+            bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
+            surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.normal)
 
     def _momentum(self, p, near, at, dt):
-        lattice = self.lattice
+        forces, around = self._forces(dt), tables.Around(p.c, p.normal, p.vectors(VISCOUS))
         with self.timers("momentum"):
-            sweeps.momentum(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.p,
-                             p.isotropy, p.scale, lattice.weight, lattice.own, self._whole, self.close2, self._push,
-                             self.viscosity * self._viscous, self._hit(dt), dt, p.ax, p.ay, p.az, p.c, p.nx, p.ny, p.nz,
-                             p.bx, p.by, p.bz)
+            sweeps.momentum(at, near.lists, p.flow, _pressures(p), self.lattice.weight, forces, p.acceleration, around)
 
     def react(self, domain, near, dt):
         """Forces of the water on the body samples `near.body`, N: (samples, 3), and how they depend on accelerations.
@@ -105,26 +104,23 @@ class WCMPS:
         Also `lever` (samples, 3), Pa s2/m, and `response` (samples, 6), kg: see `sweeps.reaction`.
         """
         p, count = domain.particles, near.body.size
-        out, lever, response = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6))
-        sweeps.reaction(near.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az,
-                         p.p, p.isotropy, p.scale, self.lattice.weight, self.density, self.close2, self._push,
-                         self._hit(dt), dt, out, lever, response)
-        out *= self.mass
-        response *= self.mass
-        return out, lever, response
+        forces = self._forces(dt)
+        out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
+        sweeps.reaction(near.body, near.lists, p.flow, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
+        return self.mass * out.force, out.lever, self.mass * out.response
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
-        return [math.sqrt(e) for e in updates.extremes(near.fluid, p.u, p.v, p.w, p.x, p.y, p.z, start)]
+        return [math.sqrt(e) for e in updates.extremes(near.fluid, p.velocity, p.place, start)]
 
     def kick(self, p, near, dt, keep):
         """Velocities to the full step; `keep` is the share of velocity kept (1 but when settling)."""
-        updates.kick(near.fluid, *self.gravity, keep, dt, p.ax, p.ay, p.az, p.u, p.v, p.w)
+        updates.kick(near.fluid, self.gravity, keep, dt, p.acceleration, p.velocity)
 
     def finish(self, domain, near, dt, speed):
         """Positions to the full step, continuity there, damping, shifting; `STATE` is left to be refreshed."""
         p, own = domain.particles, domain.own
-        with domain.refreshing("u", "v", "w", "bx", "by", "bz", "nx", "ny", "nz", "surface"):
+        with domain.refreshing(*VELOCITY, *VISCOUS, *NORMAL, "surface"):
             self._drift(p, own, dt)
             self._continuity(p, near, near.inner, speed)
         for halo in (slice(0, own.start), slice(own.stop, len(p))):
@@ -133,35 +129,40 @@ class WCMPS:
         with self.timers("move"):
             updates.grow(near.fluid, p.rate, 0.5 * dt, p.n)
             share = self.noise_damping * self.sound * self.lattice.spacing**3 * self._viscous**2 * dt
-            updates.damp(near.fluid, share, p.ex, p.ey, p.ez, p.u, p.v, p.w)
+            updates.damp(near.fluid, share, p.vectors(TWICE_VISCOUS), p.velocity)
         if self.shifting:
             with self.timers("shifting"):
                 self._shift(domain, near, dt, speed)
 
     def _drift(self, p, at, dt):
         with self.timers("move"):
-            updates.drift(p.kind[at], p.u[at], p.v[at], p.w[at], 0.5 * dt, p.x[at], p.y[at], p.z[at])
+            place, velocity = (Vectors(*(component[at] for component in which)) for which in (p.place, p.velocity))
+            updates.drift(p.kind[at], velocity, 0.5 * dt, place)
 
     def _continuity(self, p, near, at, speed):
         lattice = self.lattice
         spread = self.diffusion * self.sound**2 * self._passage(speed) * self._laplacian
+        slope = tuple(component * self._steepness for component in self._down)
+        growth = tables.Growth(lattice.number, self._gradient, spread, *slope,
+                               _CROWD / lattice.spacing, _CLOSE * lattice.spacing, float(lattice.dimensions))
+        out = tables.Change(p.rate, _shifts(p), p.vectors(TWICE_VISCOUS), p.isotropy)
         with self.timers("continuity"):
-            sweeps.continuity(at, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.u, p.v, p.w, p.n,
-                               p.bx, p.by, p.bz, p.scale, lattice.weight, lattice.number, self._gradient, spread,
-                               *(self._down * self._slope), _CROWD / lattice.spacing, _CLOSE * lattice.spacing,
-                               float(lattice.dimensions), p.body, p.rate, p.ax, p.ay, p.az, p.ex, p.ey, p.ez,
-                               p.isotropy)
+            sweeps.continuity(at, near.lists, p.flow, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
+                              lattice.weight, growth, out)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
         mach = min(speed / self.sound, _LARGEST_MACH)
         factor = 2.0 * lattice.spacing**2 * dt / self._passage(speed) * mach * self._gradient
-        surface.shift(near.fluid, near.start, near.middle, near.end, near.index, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.c,
-                      p.scale, p.body, domain.near(SURFACE, "surface"), lattice.weight, lattice.radius,
-                      (_BESIDE * lattice.spacing) ** 2, factor, _LONGEST_SHIFT * lattice.spacing, lattice.number,
-                      lattice.own, self._whole, lattice.cut, *self._down, self._slope, self.recovery * dt,
-                      self.loosest, p.ax, p.ay, p.az, p.surface, p.n)
-        updates.displace(near.fluid, p.ax, p.ay, p.az, p.x, p.y, p.z)
+        at, lists, place, n0 = near.fluid, near.lists, p.place, lattice.number
+        surface.clamp(at, p.surface, n0, self.loosest, p.n)
+        surface.mark(at, lists, place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.normal)
+        pulled = recovery.Recovery(lattice.radius**2, (_BESIDE * lattice.spacing) ** 2, n0, lattice.own,
+                                   self._whole, lattice.cut, *self._down, self.recovery * dt)
+        recovery.recover(at, lists, place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, p.n)
+        shifted = shifting.Shifting(factor, _LONGEST_SHIFT * lattice.spacing, *self._down, n0 * self._steepness)
+        shifting.shift(at, p.surface, p.normal, shifted, _shifts(p), p.n)
+        updates.displace(at, _shifts(p), place)
 
     @property
     def _gradient(self):
@@ -179,5 +180,15 @@ class WCMPS:
     def _viscous(self):
         return 2.0 * self.lattice.dimensions * (self.lattice.dimensions + 2) / self.lattice.number
 
-    def _hit(self, dt):
-        return 0.5 * (1.0 + self.restitution) / dt
+    def _forces(self, dt):
+        return tables.Forces(self.lattice.own, self._whole, self.close2, self._push,
+                             self.viscosity * self._viscous, 0.5 * (1.0 + self.restitution) / dt, dt, self.density)
+
+
+def _pressures(p):
+    return tables.Pressures(p.p, p.scale, p.isotropy)
+
+
+def _shifts(p):
+    """Where shifts are collected: accelerations of water are made anew in the next step."""
+    return p.acceleration

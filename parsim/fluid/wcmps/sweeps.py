@@ -11,54 +11,23 @@ import math
 import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
-from parsim.machine.jit import each, kernel, prange, rows
-from parsim.particles.state import DETACHED, FLUID
+from parsim.machine.jit import kernel, prange, rows
 
 LARGEST = 0.1  # correction of `isotropic`: what is less so is made isotropic by that much only
 _PART, _FULL = 0.97, 0.99  # share of n0 that water and bodies fill from which a particle is made isotropic, and fully
 
 
-@each
-def predict(kind, surface, u, v, w, rate, half, n0, stiffness, x, y, z, n, p):
-    """Fluid `half` a step on, halo included: positions, number density, pressure.
-
-    State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero in a splash. At the
-    surface it comes out near zero by itself, for continuity lacks there what the pressure force lacks. Setting it to
-    zero, as Mellado does, makes it jump by c0^2 dn/n0, more than the weight of some rows, whenever a particle is
-    found at the surface or no longer: still water then boils at 0.1 m/s.
-    """
-    for i in prange(n.size):
-        if kind[i] == FLUID:
-            x[i] += half * u[i]
-            y[i] += half * v[i]
-            z[i] += half * w[i]
-            n[i] += half * n[i] * rate[i]
-            s = n[i] / n0
-            s2 = s * s
-            p[i] = 0.0 if surface[i] == DETACHED else stiffness * (s2 * s2 * s2 * s - 1.0)
-
-
-@kernel
-def seventh_roots(y):
-    """Seventh roots of 1 + y, y (n,) >= 0 and small, by Newton: no pow, whose last bit depends on the library."""
-    out = np.empty(y.size)
-    for i in range(y.size):
-        s = 1.0 + y[i] / 7.0
-        for _ in range(4):
-            s2 = s * s
-            s6 = s2 * s2 * s2
-            s -= (s6 * s - 1.0 - y[i]) / (7.0 * s6)
-        out[i] = s
-    return out
-
-
 @rows
-def boundary_pressure(at, start, middle, index, body, x, y, z, ax, ay, az, gx, gy, gz, density, weight, p):
+def boundary_pressure(at, lists, body, place, acceleration, weight, fall, p):
     """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27), by weights W / r2.
 
     With the weights of the pressure force, what water adds to the inertia of a body is symmetric and never negative.
-    Walls do not pull, or water gets in; bodies do, or noise lifts them. `ax, ay, az`: acceleration of the sample.
+    Walls do not pull, or water gets in; bodies do, or noise lifts them. `fall`: gravity, m/s2, by component, density.
     """
+    start, middle, index = lists.start, lists.middle, lists.index
+    x, y, z = place
+    ax, ay, az = acceleration
+    gx, gy, gz, density = fall
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi = x[i], y[i], z[i]
@@ -77,8 +46,7 @@ def boundary_pressure(at, start, middle, index, body, x, y, z, ax, ay, az, gx, g
 
 
 @rows
-def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, isotropy, scale, weight, own, whole, close2, push,
-             drag, hit, dt, ax, ay, az, c, nx, ny, nz, bx, by, bz):
+def momentum(at, lists, flow, pressures, weight, forces, acceleration, around):
     """Pair accelerations, concentration, inward normal and viscous sums of fluid particles.
 
     Pressure gradient of Mellado 2021, eq. 5.15, with constant volumes, push = d / (n0 rho0), and (1 + t) p of each
@@ -87,8 +55,18 @@ def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, isotropy, scale
     damping works on (`continuity`); off walls and bodies, the collision of eqs 5.38-5.39 with the sign corrected, as
     the acceleration hit = (1 + eps) / (2 dt) times the approach, closer than sqrt(close2), at the boundary's
     velocity after dt. Water does not collide with water: shifting keeps it apart, collisions brake all that strains.
+    own, whole: see `Lattice`. On entry `acceleration` holds that of the boundary.
     """
+    start, middle, end, index = lists
+    x, y, z = flow.place
+    u, v, w = flow.velocity
+    ax, ay, az = acceleration.x, acceleration.y, acceleration.z
+    p, scale, isotropy = pressures
     txx, txy, txz, tyz, tzz = isotropy
+    own, whole, close2, push, drag, hit, dt, _ = forces
+    c, inward, viscous = around.concentration, around.inward, around.viscous
+    nx, ny, nz = inward.x, inward.y, inward.z
+    bx, by, bz = viscous.x, viscous.y, viscous.z
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, pi = x[i], y[i], z[i], u[i], v[i], w[i], p[i]
@@ -146,15 +124,21 @@ def momentum(at, start, middle, end, index, x, y, z, u, v, w, p, isotropy, scale
 
 
 @rows
-def reaction(at, start, middle, index, x, y, z, u, v, w, ax, ay, az, p, isotropy, scale, weight, density, close2, push,
-             hit, dt, out, lever, response):
-    """Pair accelerations that body samples give back to the water they see, times -1: rows of out (samples, 3).
+def reaction(at, lists, flow, acceleration, pressures, weight, forces, out):
+    """Pair accelerations that body samples give back to the water they see, times -1: rows of out.force.
 
-    They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `out` by
+    They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `force` by
     -`response` da, a symmetric matrix that is never negative, by its elements xx, xy, xz, yy, yz, zz (samples, 6).
     Which pairs collide is told by the velocities at the start of the step.
     """
+    start, middle, index = lists.start, lists.middle, lists.index
+    x, y, z = flow.place
+    u, v, w = flow.velocity
+    ax, ay, az = acceleration
+    p, scale, isotropy = pressures
     txx, txy, txz, tyz, tzz = isotropy
+    _, _, close2, push, _, hit, dt, density = forces
+    force, lever, response = out.force, out.lever, out.response
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, pi, share = x[i], y[i], z[i], u[i], v[i], w[i], p[i], scale[i]
@@ -186,7 +170,7 @@ def reaction(at, start, middle, index, x, y, z, u, v, w, ax, ay, az, p, isotropy
             sx += f * dx + e * (txx[j] * dx + txy[j] * dy + txz[j] * dz)
             sy += f * dy + e * (txy[j] * dx - (txx[j] + tzz[j]) * dy + tyz[j] * dz)
             sz += f * dz + e * (txz[j] * dx + tyz[j] * dy + tzz[j] * dz)
-        out[row, 0], out[row, 1], out[row, 2] = sx, sy, sz
+        force[row, 0], force[row, 1], force[row, 2] = sx, sy, sz
         e = density / every if every > 0.0 else 0.0
         f = push * e
         lever[row, 0], lever[row, 1], lever[row, 2] = e * mx, e * my, e * mz
@@ -216,21 +200,29 @@ def isotropic(xx, xy, xz, yy, yz, zz, dimensions, share):
 
 
 @rows
-def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, scale, weight, n0, flow, spread, hx, hy,
-               hz, crowd, close, dimensions, body, rate, ax, ay, az, ex, ey, ez, isotropy):
+def continuity(at, lists, flow, density, viscous, weight, growth, out):
     """Relative rate of n (Mellado 2021, eq. 5.16) with diffusion; the sums of shifting and of noise damping.
 
     The sums of e e W are for the pressure force, see `isotropic`. The divergence is not made isotropic too: n would no
     longer follow the arrangement of the particles, and a shear wave lost a third of a pressure of 0.05 rho c0^2.
-    flow = d / n0; spread = delta c0^2 dt 2 d / (lambda n0), fluid-fluid only, on n less its hydrostatic part, whose
+    widening = d / n0; spread = delta c0^2 dt 2 d / (lambda n0), fluid-fluid only, on n less its hydrostatic part, whose
     slope over n0 is h = g / c0^2 (Mellado's eq. 5.30 lets the hydrostatic pressure sag).
-    ax, ay, az receive sum (2 + crowd (close - r)+) e W / r: what pushes particles apart. Its first part, unlike the
+    `out.apart` receives sum (2 + crowd (close - r)+) e W / r: what pushes particles apart. Its first part, unlike the
     concentration gradient of eq. 5.33, is zero wherever the pressure force of even water is; the second keeps
     streams that strain from leaving the particles in files, which cost a Taylor-Green vortex a fifth of its energy.
-    ex, ey, ez receive the viscous sums of the viscous sums b: twice applied, the viscosity damps what changes from
+    `out.twice` receives the viscous sums of the viscous sums b: twice applied, the viscosity damps what changes from
     particle to particle and leaves what changes over many.
     """
-    txx, txy, txz, tyz, tzz = isotropy
+    start, middle, end, index = lists
+    x, y, z = flow.place
+    u, v, w = flow.velocity
+    n, scale, body = density
+    bx, by, bz = viscous
+    n0, widening, spread, hx, hy, hz, crowd, close, dimensions = growth
+    rate, apart, twice, isotropy = out.rate, out.apart, out.twice, out.isotropy
+    ax, ay, az = apart.x, apart.y, apart.z
+    ex, ey, ez = twice.x, twice.y, twice.z
+    txx, txy, txz, tyz, tzz = isotropy.xx, isotropy.xy, isotropy.xz, isotropy.yz, isotropy.zz
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi, ni = x[i], y[i], z[i], u[i], v[i], w[i], n[i]
@@ -275,7 +267,7 @@ def continuity(at, start, middle, end, index, x, y, z, u, v, w, n, bx, by, bz, s
             sx += f * gx
             sy += f * gy
             sz += f * gz
-        rate[i] = spread * diffusion - flow * divergence
+        rate[i] = spread * diffusion - widening * divergence
         txx[i], txy[i], txz[i], tyz[i], tzz[i] = isotropic(mxx, mxy, mxz, myy, myz, mzz, dimensions,
                                                                  (filled / n0 - _PART) / (_FULL - _PART))
         ax[i], ay[i], az[i] = sx, sy, sz
