@@ -135,3 +135,12 @@ def test_no_bodies():
     none = Bodies([], [], [])
     assert len(none) == 0 and none.kinetic_energy() == 0.0 and none.surface_speed() == 0.0
     assert [a.shape for a in none.surface()] == [(0, 3), (0, 4), (0,)]
+
+
+def test_the_metre_across_a_plane_does_not_count_as_a_radius():
+    """Else a small box that spins in 2D is told to be as fast as sound, and makes the step small."""
+    boxes = [Bodies([[0.01, 0.5, 0.02]], 1.0, [[0.0, 0.5, 0.0]], spin=[[0.0, 30.0, 0.0]], planar=flat)
+             for flat in (True, False)]  # fmt: skip
+    reach = [np.hypot(0.01, 0.02), np.sqrt(0.01**2 + 0.5**2 + 0.02**2)]
+    assert [box.surface_speed() for box in boxes] == pytest.approx(30.0 * np.array(reach))
+    assert [box.surface_acceleration() for box in boxes] == pytest.approx(900.0 * np.array(reach))

@@ -103,16 +103,17 @@ def speeds(case):
     """Nothing solid starts or is driven as fast as the sound of the model."""
     if case.speed <= 0.0:
         return []
-    found = [(f"bodies.{body.name}.velocity, spin", _fastest(body)) for body in case.bodies]
+    found = [(f"bodies.{body.name}.velocity, spin", _fastest(case, body)) for body in case.bodies]
     if case.gate:
         found.append(("gate.speed", case.gate.speed))
     return [f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
             "which is water.sound times water.speed" for key, speed in found if not speed < case.sound_speed]
 
 
-def _fastest(body):
+def _fastest(case, body):
     """Bound of the speed of any point of a body at the start, m/s."""
-    return math.hypot(*body.velocity) + math.hypot(*body.spin) * 0.5 * math.hypot(*body.shape.size)
+    radius = 0.5 * math.hypot(*(body.shape.size[axis] for axis in case.axes))
+    return math.hypot(*body.velocity) + math.hypot(*body.spin) * radius
 
 
 def overlaps(case):

@@ -18,9 +18,9 @@ class Bodies:
     """All bodies as arrays of nb rows; a 2D run is per metre of width and turns about y only (`planar`).
 
     mass (nb,), kg; inertia (nb, 3), principal moments in the body frame, kg m2; half (nb, 3), half edges of the box,
-    m; volume (nb,), m3; material (nb,), number of the material; fixed (nb,), never moves; released (nb,), s, held in
-    place before and then let go from rest. position (nb, 3), m; quaternion (nb, 4), body to global; velocity (nb, 3),
-    m/s; spin (nb, 3), global axes, rad/s.
+    m; radius (nb,), of the ball around it, m; volume (nb,), m3; material (nb,), number of the material; fixed (nb,),
+    never moves; released (nb,), s, held in place before and then let go from rest. position (nb, 3), m; quaternion
+    (nb, 4), body to global; velocity (nb, 3), m/s; spin (nb, 3), global axes, rad/s.
     Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
     force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin, and how well
     each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out, inf before.
@@ -33,6 +33,8 @@ class Bodies:
         self.names = list(names) if names is not None else [f"body{b}" for b in range(count)]
         self.mass, self.released = _column(mass, count), _column(released, count)
         self.fixed, self.material = _column(fixed, count, bool), _column(material, count, np.int64)
+        moving = [0, 2] if planar else [0, 1, 2]  # the metre across a plane turns with nothing
+        self.radius = np.sqrt((self.half[:, moving] ** 2).sum(1))
         self.volume, self.inertia = volume_of_box(self.half), inertia_of_box(self.half, self.mass)
         self.position, self.velocity, self.spin = (_rows(v, count, 3) for v in (position, velocity, spin))
         still = self.fixed | (self.released > -math.inf)
@@ -108,12 +110,12 @@ class Bodies:
 
     def surface_speed(self):
         """Bound of the speed of any point of any body, m/s: |v| + |w| R."""
-        return float(largest_speed(self.half, self.velocity, self.spin))
+        return float(largest_speed(self.radius, self.velocity, self.spin))
 
     def surface_acceleration(self):
         """Bound of the acceleration of any point of any body in the last step, m/s2: |a| + (|dw/dt| + |w|^2) R."""
         a, turn, w = (np.sqrt((v * v).sum(1)) for v in (self.acceleration, self.angular_acceleration, self.spin))
-        return float(np.max(a + (turn + w * w) * np.sqrt((self.half**2).sum(1)), initial=0.0))
+        return float(np.max(a + (turn + w * w) * self.radius, initial=0.0))
 
     def at_fault(self, limit):
         """Names of the bodies that are not slower than `limit`, m/s, at every point."""
@@ -125,7 +127,7 @@ class Bodies:
         return self.names[int(np.argmax(speeds))], float(np.max(speeds))
 
     def _speeds(self):
-        return [largest_speed(*(each[b : b + 1] for each in (self.half, self.velocity, self.spin)))
+        return [largest_speed(*(each[b : b + 1] for each in (self.radius, self.velocity, self.spin)))
                 for b in range(len(self))]
 
     def kinetic_energy(self):
@@ -191,14 +193,13 @@ def drift(mass, inertia, velocity, spin, dt, position, quaternion):
 
 
 @kernel
-def largest_speed(half, velocity, spin):
-    """Largest |v| + |w| R over all bodies, infinite where one is not a number."""
+def largest_speed(radius, velocity, spin):
+    """Largest |v| + |w| R over all bodies, m/s, infinite where one is not a number."""
     largest = 0.0
-    for b in range(len(half)):
-        v, w, h = velocity[b], spin[b], half[b]
-        radius = math.sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2])
+    for b in range(len(radius)):
+        v, w = velocity[b], spin[b]
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-        speed += radius * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+        speed += radius[b] * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
         if not speed < np.inf:
             return np.inf
         largest = max(largest, speed)
