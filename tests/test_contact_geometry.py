@@ -76,9 +76,10 @@ def test_elements_of_a_pair_agree_with_naive_python():
         number, slots, _ = contacts._prepare(bodies, bodies.fixed, 0.0, 0.01)
         if not number:
             continue
-        e, walls, _, pairs, shift, marks, s = contacts._listed()
-        apart, *n = normal_of(contacts._table, walls, pairs, shift, 0)
-        measure(contacts._table, e, walls, pairs, shift, marks, s, 0, tuple(n))
+        touch = contacts._touch()
+        e, pairs, marks, s = touch.elements, touch.pairs, touch.marks, touch.slots
+        apart, *n = normal_of(contacts._table, touch, 0)
+        measure(contacts._table, touch, 0, tuple(n))
         turn, n = matrices(bodies.quaternion), np.array(n)
         for slot in range(slots - 1):
             own = int(slot >= pairs[0, MIDDLE])

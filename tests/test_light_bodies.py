@@ -9,8 +9,9 @@ from parsim.case.model import parse
 from parsim.coupling.samples import added_inertia
 from parsim.domain.comm import Comm
 from parsim.geometry.rotation import from_angles, matrices
+from parsim.particles.tables import Vectors
 from parsim.run.simulation import Simulation
-from parsim.solid.acceleration import accelerate_bodies
+from parsim.solid.acceleration import Given, accelerate_bodies
 
 SQUARE, ADDED = 0.2, 1.18831  # m; added mass of a deep square over its displaced mass (1.513 pi / 4)
 
@@ -57,7 +58,8 @@ def test_accelerations_against_a_plain_solution():
     s = root @ root.transpose(0, 2, 1)
     triangle = np.triu_indices(3)
     added, water = np.empty((3, 24)), np.zeros((6, 6))
-    added_inertia(np.arange(3), np.zeros(3, np.int32), *place.T.copy(), centre, s[:, triangle[0], triangle[1]], added)
+    response = s[:, triangle[0], triangle[1]]
+    added_inertia(np.arange(3), np.zeros(3, np.int32), Vectors(*place.T.copy()), centre, response, added)
     for k in range(3):
         j = np.hstack([np.eye(3), -cross(place[k] - centre[0])])
         water += j.T @ s[k] @ j
@@ -73,8 +75,8 @@ def test_accelerations_against_a_plain_solution():
     exact = np.linalg.solve(rigid + water, load[0] + water @ before + given)
     for held in (False, True):
         now, angular, change, left = before[None, :3].copy(), before[None, 3:].copy(), np.zeros((1, 6)), load.copy()
-        accelerate_bodies(left, total[None], mass, inertia, quaternion, np.array([held]), False, gravity, contact, spin,
-                          now, angular, change)
+        bodies = Given(mass, inertia, quaternion, np.array([held]), contact, spin)
+        accelerate_bodies(left, total[None], bodies, False, gravity, now, angular, change)
         after = np.zeros(6) if held else exact
         assert np.hstack([now, angular])[0] == pytest.approx(after, rel=1e-10, abs=1e-10)
         assert change[0] == pytest.approx(after - before, rel=1e-10, abs=1e-10)

@@ -8,6 +8,7 @@ from parsim.domain.balance import even_cuts, uneven
 from parsim.particles.cells import HALO, LAYERS, REACH, Grid, Stack, occupied, sort_by_cell, sort_key, spread
 from parsim.particles.sight import cut_rows, hidden
 from parsim.particles.state import FLUID, GATE_DOWN, GATE_UP, Particles
+from parsim.particles.tables import Lists, Vectors
 
 
 def test_sort_is_by_cell_then_id():
@@ -136,7 +137,7 @@ def test_each_side_of_the_gate_meets_its_own_samples_only():
     kind = np.array([FLUID, FLUID, FLUID, GATE_UP, GATE_DOWN, GATE_UP, GATE_DOWN], np.uint8)
     index = np.array([1, 2, 3, 4, 5, 6, 0, 2, 3, 4, 5, 6, 0, 1, 3, 4, 5, 6], np.uint32)
     start, middle, end = np.array([0, 6, 12]), np.array([2, 8, 14]), np.array([6, 12, 18])
-    cut_rows(np.arange(3), x, z, kind, 0.45, 0.55, 0.5, start, middle, end, index)
+    cut_rows(np.arange(3), Vectors(x, x, z), kind, (0.45, 0.55, 0.5), Lists(start, middle, end, index))
     rows = [[list(index[start[i] : middle[i]]), list(index[middle[i] : end[i]])] for i in range(3)]
     assert rows[0] == [[2], [3, 5]]  # upstream: the sample behind the plate is its own, the other side's is not
     assert rows[1] == [[2], [4, 6]]

@@ -10,6 +10,7 @@ from parsim.domain.comm import Comm
 from parsim.observe.water import energies
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import GATE_DOWN, GATE_UP
+from parsim.particles.tables import Flow, Vectors
 from parsim.run.fill import outside_box, taken_by_bodies, water
 from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
@@ -96,7 +97,8 @@ def test_the_elastic_energy_is_the_work_of_the_pressure():
     n0, sound2, mass = 20.0, 900.0, 1.7
     s = np.array([0.97, 0.999, 1.0, 1.003, 1.02])
     zero, out, gravity = np.zeros(5), np.zeros((5, 4)), (0.0, 0.0, -9.81)
-    energies(np.arange(5), zero, zero, zero + 2.0, zero + 3.0, zero, zero, n0 * s, mass, *gravity, n0, sound2, out)
+    flow = Flow(Vectors(zero, zero, zero + 2.0), Vectors(zero + 3.0, zero, zero))
+    energies(np.arange(5), flow, n0 * s, (mass, n0, sound2), gravity, out)
     for row, end in zip(out, s, strict=True):
         middles = 1.0 + (end - 1.0) * (np.arange(2000) + 0.5) / 2000
         work = (sound2 / 7.0 * (middles**7 - 1.0) / middles).mean() * (end - 1.0)  # p / (rho0 s) over s

@@ -10,6 +10,7 @@ of its rim where there is water, of all the rim that such water would reach and 
 
 import itertools
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,51 @@ from parsim.particles.state import BODY
 
 _NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
 _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
+
+
+class Patches(NamedTuple):
+    """Sample, face, whether on a rim, place (n, 3), m, and area, m2, of each patch; of each sample its particle on this
+    rank or -1, its patches by face (samples, 6), and its body."""
+
+    sample: np.ndarray
+    face: np.ndarray
+    rim: np.ndarray
+    place: np.ndarray
+    area: np.ndarray
+    row: np.ndarray
+    patch: np.ndarray
+    body: np.ndarray
+
+
+class Boxes(NamedTuple):
+    """Centre (b, 3), turn (b, 9), half (b, 3) of the bodies; others[first[b]:first[b + 1]] are near b; period, m."""
+
+    centre: np.ndarray
+    turn: np.ndarray
+    half: np.ndarray
+    first: np.ndarray
+    others: np.ndarray
+    period: float
+
+
+class Water(NamedTuple):
+    """Pressure (particles,), Pa; slope of the hydrostatic head (3,), Pa/m; spacing, m; sums of full layers."""
+
+    pressure: np.ndarray
+    head: np.ndarray
+    spacing: float
+    layer: float
+    deep: float
+
+
+class Found(NamedTuple):
+    """Of each patch, by rows (n, 6): see `Films.loads`."""
+
+    load: np.ndarray
+    wet: np.ndarray
+    dry: np.ndarray
+    heads: np.ndarray
+
 
 
 class Films:
@@ -86,14 +132,15 @@ class Films:
         though open and below the water line, in patches; and the sum of the heads along wet rims, Pa, and their number.
         """
         p, here, b = domain.particles, self._here, self.bodies
-        load, wet, dry, heads = np.zeros((4, here.size, 6))
-        patch_loads(here, self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
-                    self.samples.body, near.start, near.middle, near.index, p.x, p.y, p.z, p.p, position,
-                    matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period, self._planes,
-                    plate, self._head, b.film, self._spacing, self._weight, self._layer, self._deep, load, wet,
-                    dry, heads)
+        found = Found(*np.zeros((4, here.size, 6)))
+        patches = Patches(self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
+                          self.samples.body)
+        boxes = Boxes(position, matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period)
+        water = Water(p.p, self._head, self._spacing, self._layer, self._deep)
+        solids = boxes, self._planes, plate
+        patch_loads(here, patches, near.lists, p.place, solids, (water, self._weight), b.film, found)
         body = self.samples.body[self.sample[here]].astype(np.int64)
-        return np.concatenate([load, wet, dry, heads]), np.concatenate([body + k * len(b) for k in range(4)])
+        return np.concatenate(found), np.concatenate([body + k * len(b) for k in range(4)])
 
     def keep(self, wet, dry, heads):
         """Note the sums over all ranks, (bodies, 6) each, for the next step."""
@@ -146,20 +193,22 @@ def gap_to_box(x, n, half, behind):
 
 
 @kernel
-def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, spacing):
-    """Distance from x (3,) along n (3,) to the nearest wall, gate or body of `others`; inf where there is none.
+def gap_ahead(x, n, b, solids, spacing):
+    """Distance from x (3,) on body `b` along n (3,) to the nearest wall, gate or other body; inf where there is none.
 
-    `gate` (4,): its low and high x, the height of its lower edge, and 1 where there is one; `beside`: the x that tells
-    which face of it counts.
+    `solids`: Boxes, the walls' planes, and the gate (4,): its low and high x, the height of its lower edge, and 1 where
+    there is one.
     """
+    boxes, planes, gate = solids
+    centre, turn, half, first, others, period = boxes
     gap = np.inf
     for w in range(len(planes)):
         gap = min(gap, gap_to_plane(x, n, planes[w]))
     if gate[3] > 0.0 and x[2] >= gate[2]:
-        level, side = (gate[0], 1.0) if beside < 0.5 * (gate[0] + gate[1]) else (gate[1], -1.0)
+        level, side = (gate[0], 1.0) if centre[b, 0] < 0.5 * (gate[0] + gate[1]) else (gate[1], -1.0)
         if n[0] * side > 0.5:
             gap = min(gap, (level - x[0]) * side / (n[0] * side))
-    for d in others:
+    for d in others[first[b] : first[b + 1]]:
         dx = x[0] - centre[d, 0]
         if period < np.inf:
             dx -= period * np.rint(dx / period)
@@ -169,11 +218,13 @@ def gap_ahead(x, n, beside, planes, gate, others, centre, turn, half, period, sp
 
 
 @kernel
-def water_at(i, x, n, start, middle, index, px, py, pz, weight):
+def water_at(i, x, n, lists, place, weight):
     """Sums of sample i: W over all the water it sees; W d / r2 over that before its face, at x with normal n, d ahead.
 
     The second is what the water pushes with: one layer does about 85 % of what deep water does, the film the rest.
     """
+    start, middle, _, index = lists
+    px, py, pz = place
     every, ahead = 0.0, 0.0
     for c in range(start[i], middle[i]):
         j = index[c]
@@ -187,22 +238,27 @@ def water_at(i, x, n, start, middle, index, px, py, pz, weight):
 
 
 @kernel
-def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start, middle, index, px, py, pz, pressure,
-                centre, turn, half, first, others, period, planes, gate, head, film, spacing, weight, layer, deep, load,
-                wet, dry, heads):
-    """Load of the film on each patch `here`, and what its rim tells of the water: see `Films.loads`."""
+def patch_loads(here, patches, lists, points, solids, water, film, found):
+    """Load of the film on each patch `here`, and what its rim tells of the water: see `Films.loads`.
+
+    `points`: places of the particles; `solids`: see `gap_ahead`; `water`: Water and its weight; `film`: see `Bodies`.
+    """
+    sample, face, on_rim, place, area, row, patch, body = patches
+    px, py, pz = points
+    centre, turn = solids[0].centre, solids[0].turn
+    (pressure, head, spacing, layer, deep), weight = water
+    load, wet, dry, heads = found
     for k in range(here.size):
         m = here[k]
         s, f = sample[m], face[m]
         b = body[s]
-        near = others[first[b] : first[b + 1]]
         lx, ly, lz = to_global(turn[b], place[m, 0], place[m, 1], place[m, 2])
         x = (centre[b, 0] + lx, centre[b, 1] + ly, centre[b, 2] + lz)
         n = normal(turn[b], f)
         i = row[s]
         every, ahead = 0.0, 0.0
         if i >= 0:
-            every, ahead = water_at(i, x, n, start, middle, index, px, py, pz, weight)
+            every, ahead = water_at(i, x, n, lists, points, weight)
             ahead *= spacing / deep
         value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
         if on_rim[m]:
@@ -217,13 +273,13 @@ def patch_loads(here, sample, face, on_rim, place, area, row, patch, body, start
                     if g == f or c < 0:
                         continue
                     ex, ey, ez = to_global(turn[b], place[c, 0], place[c, 1], place[c, 2])
-                    gap = gap_ahead((centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez), normal(turn[b], g),
-                                    centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
+                    edge = (centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez)
+                    gap = gap_ahead(edge, normal(turn[b], g), b, solids, spacing)
                     if gap > _FAR * spacing:
                         dry[k, f] = 1.0 - share
         if value <= 0.0 or film[b, 1 + f] == 0.0 or ahead >= 1.0:
             continue
-        gap = gap_ahead(x, n, centre[b, 0], planes, gate, near, centre, turn, half, period, spacing)
+        gap = gap_ahead(x, n, b, solids, spacing)
         closed = min(max((_FAR - gap / spacing) / (_FAR - _NEAR), 0.0), 1.0)
         force = -value * film[b, 1 + f] * area[m] * closed * (1.0 - ahead)
         fx, fy, fz = force * n[0], force * n[1], force * n[2]

@@ -1,6 +1,7 @@
 """Water on bodies, bodies on water: the samples that a body shows to the water, and the loads they bring back."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,9 +9,22 @@ from parsim.errors import InputError
 from parsim.geometry.rotation import matrices
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, Particles, make_id
-from parsim.solid.acceleration import accelerate_bodies
+from parsim.particles.tables import Vectors
+from parsim.solid.acceleration import Given, accelerate_bodies
 
 _WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
+
+
+class Motion(NamedTuple):
+    """Of all bodies: position, velocity, spin, acceleration, angular acceleration (b, 3), turn (b, 3, 3)."""
+
+    position: np.ndarray
+    turn: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray
+    acceleration: np.ndarray
+    angular: np.ndarray
+
 
 
 class BodySamples:
@@ -54,7 +68,7 @@ class BodySamples:
         """Body samples of the slab that may see water; InputError for a body that comes to a periodic side."""
         x, y, z = (np.empty(len(self)) for _ in range(3))
         turn = matrices(self.bodies.quaternion)
-        locate(self.offsets, self.body, self.bodies.position, turn, x, y, z)
+        locate(self.offsets, self.body, self.bodies.position, turn, Vectors(x, y, z))
         beside = slab.beside_period(x, y, z)
         if beside.any():
             raise InputError(f"bodies.{self.bodies.names[self.body[beside.argmax()]]}: reaches a periodic side at t = "
@@ -71,9 +85,12 @@ class BodySamples:
 
         Velocity and acceleration are those of the rigid motion; returns nothing.
         """
+        motion = self._motion(position, quaternion)
+        place_samples(p.kind, p.body, p.sample, self.offsets, motion, p.flow, p.acceleration)
+
+    def _motion(self, position, quaternion):
         b = self.bodies
-        place_samples(p.kind, p.body, p.sample, self.offsets, position, matrices(quaternion), b.velocity, b.spin,
-                      b.acceleration, b.angular_acceleration, p.x, p.y, p.z, p.u, p.v, p.w, p.ax, p.ay, p.az)
+        return Motion(position, matrices(quaternion), b.velocity, b.spin, b.acceleration, b.angular_acceleration)
 
     def loads(self, domain, near, force, response, centre, others, rows):
         """Sums over all ranks about `centre` (bodies, 3): loads, N and N m, films (3 arrays), added inertia.
@@ -84,8 +101,8 @@ class BodySamples:
         """
         p, at, count = domain.particles, near.body, len(centre)
         each, added = np.empty((at.size, 6)), np.empty((at.size, 24))
-        levers(at, p.body, p.x, p.y, p.z, centre, force, each)
-        added_inertia(at, p.body, p.x, p.y, p.z, centre, response, added)
+        levers(at, p.body, p.place, centre, force, each)
+        added_inertia(at, p.body, p.place, centre, response, added)
         body = p.body[at].astype(np.int64)
         rows = np.concatenate([body, rows, *(body + k * count for k in range(4, 8))])
         values = np.concatenate([each, others, *np.split(added, 4, axis=1)])
@@ -101,9 +118,9 @@ class BodySamples:
         """
         b = self.bodies
         change = np.zeros((len(b), 6))
-        accelerate_bodies(load, added, b.mass, b.inertia, quaternion, b.held(time), b.planar, self._gravity,
-                          b.contact_load, b.spin, b.acceleration, b.angular_acceleration, change)
-        respond(near.body, p.body, p.x, p.y, p.z, position, change, lever, p.p)
+        given = Given(b.mass, b.inertia, quaternion, b.held(time), b.contact_load, b.spin)
+        accelerate_bodies(load, added, given, b.planar, self._gravity, b.acceleration, b.angular_acceleration, change)
+        respond(near.body, p.body, p.place, position, change, lever, p.p)
         self.place(p, position, quaternion)
         return load
 
@@ -117,14 +134,14 @@ class BodySamples:
         Water one layer thick has no pressure, so it can sink into what it lies on. The impulse is not given back: these
         are single particles.
         """
-        b = self.bodies
-        expel(self._beside, near.middle, near.end, near.index, p.body, p.x, p.y, p.z, position, matrices(quaternion),
-              b.half, b.velocity, b.spin, self._axes, self._way_out, p.u, p.v, p.w)
+        motion = self._motion(position, quaternion)
+        expel(self._beside, near.lists, p.body, motion, self.bodies.half, self._axes, self._way_out, p.flow)
 
 
 @kernel
-def locate(offsets, body, position, turn, x, y, z):
+def locate(offsets, body, position, turn, place):
     """Global positions of samples: centre plus turned offset."""
+    x, y, z = place
     for s in range(body.size):
         b = body[s]
         o = offsets[s]
@@ -134,9 +151,12 @@ def locate(offsets, body, position, turn, x, y, z):
 
 
 @kernel
-def place_samples(kind, body, sample, offsets, position, turn, velocity, spin, acceleration, angular, x, y, z, u, v, w,
-                  ax, ay, az):
-    """Position, velocity and acceleration of every body sample from the rigid motion of its body."""
+def place_samples(kind, body, sample, offsets, motion, flow, out):
+    """Position, velocity and acceleration `out` of every body sample from the rigid motion of its body."""
+    position, turn, velocity, spin, acceleration, angular = motion
+    x, y, z = flow.place
+    u, v, w = flow.velocity
+    ax, ay, az = out
     for i in range(kind.size):
         if kind[i] != BODY:
             continue
@@ -156,8 +176,12 @@ def place_samples(kind, body, sample, offsets, position, turn, velocity, spin, a
 
 
 @kernel
-def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity, spin, axes, way_out, u, v, w):
+def expel(at, lists, body, motion, half, axes, way_out, flow):
     """Velocity of fluid inside a body: outward through the nearest face, at least its depth in `way_out` s."""
+    _, middle, end, index = lists
+    position, turn, velocity, spin, _, _ = motion
+    x, y, z = flow.place
+    u, v, w = flow.velocity
     for i in at:
         last = -1
         for s in range(middle[i], end[i]):
@@ -184,8 +208,9 @@ def expel(at, middle, end, index, body, x, y, z, position, turn, half, velocity,
 
 
 @kernel
-def levers(at, body, x, y, z, centre, force, out):
+def levers(at, body, place, centre, force, out):
     """Force and torque about the body's centre of each sample `at`: rows of out (n, 6)."""
+    x, y, z = place
     for row in range(at.size):
         i = at[row]
         b = body[i]
@@ -198,8 +223,9 @@ def levers(at, body, x, y, z, centre, force, out):
 
 
 @kernel
-def added_inertia(at, body, x, y, z, centre, response, out):
+def added_inertia(at, body, place, centre, response, out):
     """J^T S J of each sample `at`, S its `response`, J = (1, -[r]): upper triangles by rows of out (n, 24)."""
+    x, y, z = place
     j, s, sj = np.zeros((3, 6)), np.zeros((3, 3)), np.zeros((3, 6))
     j[0, 0] = j[1, 1] = j[2, 2] = 1.0
     for row in range(at.size):
@@ -221,8 +247,9 @@ def added_inertia(at, body, x, y, z, centre, response, out):
 
 
 @kernel
-def respond(at, body, x, y, z, centre, change, lever, p):
+def respond(at, body, place, centre, change, lever, p):
     """Pressure p of the samples `at` after the `change` (bodies, 6) of their bodies' accelerations; lever (n, 3)."""
+    x, y, z = place
     for row in range(at.size):
         i = at[row]
         b = body[i]

@@ -32,8 +32,8 @@ class Measure:
 
     def _energy(self, s):
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 4))
-        water.energies(at, p.x, p.y, p.z, p.u, p.v, p.w, p.n, s.scheme.mass, *self.case.gravity,
-                             s.scheme.lattice.number, s.scheme.sound**2, out)
+        water.energies(at, p.flow, p.n, (s.scheme.mass, s.scheme.lattice.number, s.scheme.sound**2), self.case.gravity,
+                       out)
         kinetic, potential, elastic, volume = (float(value) for value in s.domain.sum(out))
         self.volume = volume * s.scheme.lattice.volume  # of m / rho, not of N
         b, c = s.bodies, s.contacts
@@ -44,8 +44,9 @@ class Measure:
     def _counts(self, s):
         p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
         gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)
-        water.misplaced(at, p.x, p.y, p.z, self.walls, self.ends, 0.25 * self.case.spacing, s.bodies.position,
-                              matrices(s.bodies.quaternion), s.bodies.half, *gate, count)
+        water.misplaced(at, p.place, (self.walls, self.ends),
+                        (s.bodies.position, matrices(s.bodies.quaternion), s.bodies.half), gate,
+                        0.25 * self.case.spacing, count)
         surface = water.count_surface(at, p.surface)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, surface)
         every = fluid + len(s.models.walls) + len(s.models.samples)
@@ -64,8 +65,8 @@ class Measure:
         if not len(self.gauges):
             return []
         p, top = s.domain.particles, np.full(len(self.gauges), -np.inf)
-        water.levels(s.near.fluid, p.surface, p.x, p.y, p.z, self.gauges, GAUGE_REACH * self.case.spacing,
-                           self.case.dimensions == 2, top)
+        water.levels(s.near.fluid, p.surface, p.place, self.gauges, GAUGE_REACH * self.case.spacing,
+                     self.case.dimensions == 2, top)
         top = s.domain.max(*top)
         level = np.where(np.isfinite(top), top + 0.5 * self.case.spacing, np.nan)
         return [[g.name, float(x), float(y), float(z)]

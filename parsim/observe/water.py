@@ -9,12 +9,16 @@ from parsim.particles.state import DETACHED, SURFACE
 
 
 @kernel
-def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
+def energies(at, flow, n, water, gravity, out):
     """Kinetic, potential and elastic energy, J, and m / rho over m / rho0 of each fluid particle `at`: out (n, 4).
 
     Elastic: what the pair forces put into n, the integral of p / (rho0 s) over s = n / n0 of the state,
-    c0^2 / 7 ((s^7 - 1) / 7 - ln s).
+    c0^2 / 7 ((s^7 - 1) / 7 - ln s). `water`: mass of a particle, kg, n0, c0^2, m2/s2; gravity (3,), m/s2.
     """
+    x, y, z = flow.place
+    u, v, w = flow.velocity
+    mass, n0, sound2 = water
+    gx, gy, gz = gravity
     for row in range(at.size):
         i = at[row]
         s = n[i] / n0
@@ -26,17 +30,21 @@ def energies(at, x, y, z, u, v, w, n, mass, gx, gy, gz, n0, sound2, out):
 
 
 @kernel
-def misplaced(at, x, y, z, walls, ends, slack, centre, turn, half, gate_low, gate_high, barrier, count):
+def misplaced(at, place, walls, bodies, gate, slack, count):
     """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
 
-    walls (2, 3): lowest and highest corner between the walls, infinite where there is none; ends (2, 3): of where
-    there are walls; centre (b, 3), turn (b, 3, 3), half (b, 3): the bodies.
+    walls: lowest and highest corner between them, infinite where there is none, (2, 3), and of where there are walls,
+    (2, 3); bodies: centre (b, 3), turn (b, 3, 3), half (b, 3); gate: its low and high x, and where it ends below, m.
     """
+    x, y, z = place
+    between, ends = walls
+    centre, turn, half = bodies
+    gate_low, gate_high, barrier = gate
     for i in at:
         r, within, behind = (x[i], y[i], z[i]), True, False
         for a in range(3):
             within = within and ends[0, a] <= r[a] <= ends[1, a]
-            behind = behind or r[a] < walls[0, a] - slack or r[a] > walls[1, a] + slack
+            behind = behind or r[a] < between[0, a] - slack or r[a] > between[1, a] + slack
         count[0] += within and behind
         for b in range(centre.shape[0]):
             inside = True
@@ -69,8 +77,9 @@ def columns(at, surface, x, low, width, filled, farthest):
 
 
 @kernel
-def levels(at, surface, x, y, z, gauges, reach, flat, out):
+def levels(at, surface, place, gauges, reach, flat, out):
     """Highest connected particle within `reach`, m, of each gauge (k, 2) into out (k,); `flat` ignores y."""
+    x, y, z = place
     for k in range(gauges.shape[0]):
         for i in at:
             if surface[i] != DETACHED:

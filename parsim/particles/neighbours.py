@@ -5,6 +5,8 @@ its particles selects. Every selection is done in two passes, marks by SIMD and 
 third faster than both in one. Blocks of one cell cost a fifth more, of three or four as much as of two.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from parsim.machine.jit import kernel, prange, rows
@@ -19,6 +21,16 @@ _BOUNDARY = 0.6  # length of a row of a boundary particle, which holds fluid onl
 _ROOM = 1.02
 _BOUNDARY_PAIR = 3  # pairs of boundary particles that cost as much as one of water
 _PARTICLE, _SURFACE, _SAMPLE = 50, 55, 120  # such pairs for any particle, more near the surface, more in a body
+
+
+class Cells(NamedTuple):
+    """Where the particles of each cell begin, first cells of the blocks, column and pieces of the stack, its shape."""
+
+    first: np.ndarray
+    blocks: np.ndarray
+    column: np.ndarray
+    pieces: np.ndarray
+    shape: np.ndarray
 
 
 class Neighbours:
@@ -53,8 +65,8 @@ class Neighbours:
             if self.index.size < offsets[-1]:
                 self.index = np.empty(int(offsets[-1] * _ROOM), np.uint32)
             full = np.zeros(len(rows), np.uint8)
-            list_pairs(p.x, p.y, p.z, p.kind, p.image, first, blocks, stack.column, stack.pieces, shape, room,
-                       radius * radius, offsets, self.start, self.middle, self.end, self.index, full)
+            cells = Cells(first, blocks, stack.column, stack.pieces, shape)
+            list_pairs(p.place, p.kind, p.image, cells, (room, radius * radius), offsets, self.lists, full)
             if not full.any():
                 break
             self.expected *= 1.1
@@ -89,8 +101,7 @@ class Neighbours:
         near = np.sort(np.concatenate([self.fluid, self.boundary]))
         # each side's samples reach up to a support, less than `radius`, beyond the other face
         near = near[(p.x[near] > gate.min_x - 2.5 * radius) & (p.x[near] < gate.max_x + 2.5 * radius)]
-        cut_rows(near, p.x, p.z, p.kind, gate.min_x, gate.max_x, barrier, self.start, self.middle, self.end,
-                 self.index)
+        cut_rows(near, p.place, p.kind, (gate.min_x, gate.max_x, barrier), self.lists)
         self.boundary = self.boundary[self.end[self.boundary] > self.start[self.boundary]]
         self.body = self.body[self.end[self.body] > self.start[self.body]]
 
@@ -139,13 +150,17 @@ def rows_of_tasks(kind, first, blocks, shape):
 
 
 @rows
-def list_pairs(x, y, z, kind, image, first, blocks, column, pieces, shape, room, radius2, offsets, start, middle, end,
-               index, full):
-    """Fill the rows of all particles in `blocks`; those of a task stand between its `offsets`.
+def list_pairs(place, kind, image, cells, limits, offsets, lists, full):
+    """Fill the rows of all particles in the blocks of `cells`; those of a task stand between its `offsets`.
 
     A column in two pieces is read cell by cell, so that candidates always come in the order of the whole column.
     Where a task might run out of room it is marked in `full` and left: the caller starts again with more.
+    limits: room for the candidates of a block, and the squared radius, m2.
     """
+    x, y, z = place
+    first, blocks, column, pieces, shape = cells
+    start, middle, end, index = lists.start, lists.middle, lists.end, lists.index
+    room, radius2 = limits
     for task in prange(full.size):
         mark = np.empty(room, np.uint8)
         wet, dry = np.empty(room, np.uint32), np.empty(room, np.uint32)  # fluid and boundary candidates

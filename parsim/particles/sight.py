@@ -59,11 +59,14 @@ def visible(i, j, other, x, z, low, high, barrier):
 
 
 @kernel
-def cut_rows(near, x, z, kind, low, high, barrier, start, middle, end, index):
+def cut_rows(near, place, kind, plate, lists):
     """Compact the rows `near` in place, keeping only neighbours that the gate leaves in sight.
 
-    Nearly all pairs are settled by lying on one side of the plate.
+    Nearly all pairs are settled by lying on one side of the plate: its low and high x, and where it ends below, m.
     """
+    x, _, z = place
+    low, high, barrier = plate
+    start, middle, end, index = lists
     between = 0.5 * (low + high)
     for i in near:
         m = start[i]

@@ -1,6 +1,7 @@
 """Accelerations of bodies with the inertia that the water adds, solved at once: stable however light they are."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,14 +9,25 @@ from parsim.geometry.rotation import matrix, scaled
 from parsim.machine.jit import kernel
 
 
+class Given(NamedTuple):
+    """Mass (nb,), moments of inertia (nb, 3), quaternion (nb, 4), held (nb,), contact load (nb, 6), spin (nb, 3)."""
+
+    mass: np.ndarray
+    inertia: np.ndarray
+    quaternion: np.ndarray
+    held: np.ndarray
+    contact: np.ndarray
+    spin: np.ndarray
+
+
 @kernel
-def accelerate_bodies(load, added, mass, inertia, quaternion, held, planar, gravity, contact, spin, acceleration,
-                      angular, change):
+def accelerate_bodies(load, added, bodies, planar, gravity, acceleration, angular, change):
     """Solve (m + added) a = load + added a0 + gravity + contacts - gyroscopic torque for every body.
 
     a0, then a: `acceleration`, `angular` (nb, 3); their difference: `change` (nb, 6), the `load` then less by added
     times that. By Cholesky, for its bits are the same everywhere.
     """
+    mass, inertia, quaternion, held, contact, spin = bodies
     m, rhs = np.zeros((6, 6)), np.zeros(6)
     water, unit = np.zeros((6, 6)), np.eye(3)
     for b in range(mass.size):

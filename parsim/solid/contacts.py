@@ -15,6 +15,7 @@ from parsim.solid.search import (
     SLOT_KEY,
     STRETCH,
     TOUCHING,
+    Touch,
     fill_slots,
     near_pairs,
     recall,
@@ -67,20 +68,18 @@ class Contacts:
         """
         bodies.water_load[:] = water_load
         number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
-        self.count, self.steps, lost, work = advance(
-            self._table, *self._listed(), self._tanks, number, dt, reach, self._steps_per_contact, self._state
-        )
+        self.count, self.steps, lost, work = advance(self._table, self._touch(), number, dt, reach,
+                                                     self._steps_per_contact, self._state)
         self.dissipated, self.gate_work, self._time = self.dissipated + lost, self.gate_work + work, time + dt
         self._remember(number, slots)
-        finish(self._table, dt, bodies.position, bodies.quaternion, bodies.velocity, bodies.spin, bodies.acceleration,
-               bodies.angular_acceleration, bodies.contact_load)
+        finish(self._table, dt, _pose(bodies), bodies.acceleration, bodies.angular_acceleration, bodies.contact_load)
 
     def elastic_energy(self):
         """Energy, J, stored in the contacts at the present pose."""
         if not len(self.bodies):
             return 0.0
         number, _, _ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
-        return float(elastic(self._table, *self._listed(), self._tanks, number))
+        return float(elastic(self._table, self._touch(), number))
 
     def kept(self):
         """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
@@ -103,39 +102,38 @@ class Contacts:
         if self._gate is not None:
             m[count, table.POSITION + 2] = self._gate.bottom(time) + m[count, table.HALF + 2]
             m[count, table.VELOCITY + 2] = self._gate.velocity(time)
-        begin(m, bodies.position, bodies.quaternion, bodies.velocity, bodies.spin, bodies.mass, held,
-              bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
+        begin(m, _pose(bodies), bodies.mass, held, bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
         number, reach = self._list_pairs(bodies.planar, dt)
         return number, self._list_slots(number, reach), reach
 
-    def _listed(self):
-        return self._elements, self._walls, self._law, self._pairs, self._shift, self._marks, self._slots
+    def _touch(self):
+        return Touch(self._elements, self._walls, self._law, self._pairs, self._shift, self._marks, self._slots,
+                     self._tanks)
 
     def _list_pairs(self, planar, dt):
         place = self._table[:-1, table.POSITION].copy()
         if self._period[0] < math.inf:
             place = place - self._period[0] * np.floor(place / self._period[0])
         order = np.argsort(place, kind="stable")
-        find = self._table, self._walls, self._period, planar, self._gate is not None, dt, place, order
-        number, reach = near_pairs(*find, self._pairs, self._shift)
+        find = self._period, planar, self._gate is not None, dt, place, order
+        number, reach = near_pairs(self._table, self._touch(), *find)
         if number > len(self._pairs):
             self._pairs, self._shift = room_for_pairs(2 * number)
-            number, reach = near_pairs(*find, self._pairs, self._shift)
+            number, reach = near_pairs(self._table, self._touch(), *find)
         if number > 1:
             sort_pairs(self._pairs, self._shift, number)
         if number > len(self._tanks):
             self._tanks = room_for_tanks(2 * number)
-        recall_tanks(self._pairs, number, self._tanks, self._pair, self._stored)
+        recall_tanks(self._touch(), number, self._pair, self._stored)
         return number, reach
 
     def _list_slots(self, number, reach):
         if number == 0:
             return 0
-        find = self._table, self._first, self._elements, self._walls, self._pairs, self._shift, number, reach
-        count = fill_slots(*find, self._marks, self._slots)
+        count = fill_slots(self._table, self._touch(), self._first, number, reach)
         if count > len(self._marks):
             self._marks, self._slots = room_for_slots(2 * count)
-            count = fill_slots(*find, self._marks, self._slots)
+            count = fill_slots(self._table, self._touch(), self._first, number, reach)
         recall(self._marks, self._slots, count, self._key, self._element, self._stretch)
         return count
 
@@ -147,6 +145,10 @@ class Contacts:
         at = np.flatnonzero(self._marks[:count, TOUCHING])
         self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]
         self._stretch = self._slots[at, STRETCH:]
+
+
+def _pose(bodies):
+    return bodies.position, bodies.quaternion, bodies.velocity, bodies.spin
 
 
 def _depth(case, bodies):

@@ -16,23 +16,24 @@ _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def press(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, lapse):
+def press(m, touch, number, lapse):
     """Contact loads of the first `number` pairs into the table and the tanks; how many elements touch.
 
     `law` (3, n, n): stiffness per area, Pa/m, damping ratio and friction over materials. `lapse`: time since the last
     call, s, by which friction springs have stretched. 50 ns an element that touches, 1 us a pair that overlaps.
     """
+    pairs, marks = touch.pairs, touch.marks
     clear_loads(m)
     touching = 0
     for c in range(number):
-        apart, x, y, z = normal_of(m, walls, pairs, shift, c)
-        area = measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) if apart < 0.0 else 0.0
+        apart, x, y, z = normal_of(m, touch, c)
+        area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
         if area == 0.0:
             for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
                 marks[slot, TOUCHING] = 0
-            load_pair(m, pairs, shift, tanks, c, 0.0, 0.0, _NO_LOAD, _NO_LOAD)
+            load_pair(m, touch, c, 0.0, 0.0, _NO_LOAD, _NO_LOAD)
             continue
-        touching += _push(m, law, pairs, shift, marks, slots, tanks, c, (x, y, z), area, lapse)
+        touching += _push(m, touch, c, (x, y, z), area, lapse)
     return touching
 
 
@@ -59,28 +60,31 @@ def _compliance(m, b, p, by, n):
 
 
 @kernel
-def _push(m, law, pairs, shift, marks, slots, tanks, c, n, total, lapse):
+def _push(m, touch, c, n, total, lapse):
     """Add the loads of one pair whose elements touch with the area `total`; how many there are.
 
     The dashpots share 2 b sqrt(m* k A) by area, m* taken at the centre of the touching area: restitution then depends
     neither on the number of elements nor on where the body is hit.
     """
+    law, pairs, shift, slots = touch.law, touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     stiffness, damping, mu = coefficients(m, law, a, b)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total)
     motion = relative_motion(m, a, b, by)
-    touching, shear, pressed, force, loss = _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu)
-    load_pair(m, pairs, shift, tanks, c, shear + pressed, shear, force, loss)
+    touching, shear, pressed, force, loss = _sum(touch, first, last, n, motion, lapse, (stiffness, dashpot, mu))
+    load_pair(m, touch, c, shear + pressed, shear, force, loss)
     return touching
 
 
 @kernel
-def _sum(marks, slots, first, last, n, motion, lapse, stiffness, dashpot, mu):
+def _sum(touch, first, last, n, motion, lapse, law):
     """The law for each element of one pair: (touching, energy in friction, in foundations, load on a, its lossy part).
 
     Both loads are six numbers: force and torque about the centre of body a.
     """
+    marks, slots = touch.marks, touch.slots
+    stiffness, dashpot, mu = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(TANGENTIAL) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -129,11 +133,12 @@ def velocity_at(motion, x, y, z):
 
 
 @kernel
-def free_time(m, walls, pairs, shift, number, dt):
+def free_time(m, touch, number, dt):
     """A time, s, at most `dt`, in which no pair that is apart can touch; 0 if one overlaps."""
+    pairs = touch.pairs
     least = dt
     for c in range(number):
-        apart = normal_of(m, walls, pairs, shift, c)[0]
+        apart = normal_of(m, touch, c)[0]
         speed = speed_of(m, pairs[c, A], dt)
         if pairs[c, B] >= 0:
             speed += speed_of(m, pairs[c, B], dt)

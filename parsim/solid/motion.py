@@ -35,12 +35,13 @@ from parsim.solid.table import (
 
 
 @kernel
-def begin(m, position, quaternion, velocity, spin, mass, held, water, gravity, planar, weight):
+def begin(m, pose, mass, held, water, gravity, planar, weight):
     """Take over pose, velocity and spin of the bodies and set all that follows from them in the table `m`.
 
     `water` (nb, 6): constant load; `held` (nb,): bodies that do not move; `weight` (nb, 6) receives gravity's load.
-    In 2D only x, z and turns about y remain.
+    In 2D only x, z and turns about y remain. `pose`: position, quaternion, velocity and spin of all bodies.
     """
+    position, quaternion, velocity, spin = pose
     for b in range(mass.size):
         still = held[b]
         m[b, ROLE], m[b, LIGHT] = (HELD, 0.0) if still else (ALONE, 1.0 / mass[b])
@@ -67,8 +68,9 @@ def begin(m, position, quaternion, velocity, spin, mass, held, water, gravity, p
 
 
 @kernel
-def finish(m, dt, position, quaternion, velocity, spin, acceleration, angular, contact):
+def finish(m, dt, pose, acceleration, angular, contact):
     """Hand pose, velocity and spin back, with the accelerations and the mean contact load of the step `dt`, s."""
+    position, quaternion, velocity, spin = pose
     for b in range(len(position)):
         for a in range(3):
             acceleration[b, a] = (m[b, VELOCITY + a] - velocity[b, a]) / dt

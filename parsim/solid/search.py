@@ -12,6 +12,7 @@ lowest and highest corner of where they are.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,28 @@ DEPTH, AREA, POINT, STRETCH = 0, 1, 2, 5
 _MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
+class Touch(NamedTuple):
+    """What may touch, and with what: the tables above; elements: see `shapes.box`; law: see `forces.press`; tanks."""
+
+    elements: np.ndarray
+    walls: np.ndarray
+    law: np.ndarray
+    pairs: np.ndarray
+    shift: np.ndarray
+    marks: np.ndarray
+    slots: np.ndarray
+    tanks: np.ndarray
+
+
+class Reach(NamedTuple):
+    """How far is looked for pairs: period (3,), m; half extents of the upright boxes (b, 3), m; reach, m; 2D or not."""
+
+    period: np.ndarray
+    extent: np.ndarray
+    reach: float
+    planar: bool
+
+
 def room_for_pairs(count):
     """Empty tables of pairs and their shifts."""
     return np.zeros((count, 7), np.int64), np.zeros((count, 3))
@@ -38,16 +61,18 @@ def room_for_slots(count):
 
 
 @kernel
-def near_pairs(m, walls, period, planar, gate, dt, place, order, pairs, shift):
+def near_pairs(m, touch, period, planar, gate, dt, place, order):
     """Find the pairs that may touch within `dt`, s, and mark their bodies as involved; (number, reach in m).
 
     `period` (3,), m, inf where nothing repeats; `gate`: whether there is one; `place` (nb,): x within the period, and
-    the `order` that sorts it. A number beyond the room in `pairs`
-    says how much is needed. Sweep along x, then upright boxes, then separating axes. 9 blocks apart: 5 us.
+    the `order` that sorts it. A number beyond the room for pairs says how much is needed. Sweep along x, then upright
+    boxes, then separating axes. 9 blocks apart: 5 us.
     """
+    walls = touch.walls
     count, number = len(m) - 1, 0
     reach = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + 1e-9
     extent, widest = _extents(m, count)
+    near = Reach(period, extent, reach, planar)
     for row in range(count):
         for step in range(1, count):
             other, around = row + step, 0.0
@@ -59,13 +84,13 @@ def near_pairs(m, walls, period, planar, gate, dt, place, order, pairs, shift):
             if along > 2.0 * widest + reach or along > 0.5 * period[0]:
                 break
             a, b = min(order[row], order[other]), max(order[row], order[other])
-            number = _add(m, pairs, shift, number, a, b, period, extent, reach, planar)
+            number = _add(m, touch, number, a, b, near)
     for a in range(count):
         if gate and m[a, ROLE] != HELD:
-            number = _add(m, pairs, shift, number, a, count, period, extent, reach, planar)
+            number = _add(m, touch, number, a, count, near)
         for w in range(len(walls)):
             if m[a, ROLE] != HELD and above(m, walls, a, w) < reach:
-                number = _note(m, pairs, shift, number, a, -1 - w, 0, (0.0, 0.0, 0.0))
+                number = _note(m, touch, number, a, -1 - w, 0, (0.0, 0.0, 0.0))
     return number, reach
 
 
@@ -91,8 +116,9 @@ def _extents(m, count):
 
 
 @kernel
-def _add(m, pairs, shift, number, a, b, period, extent, reach, planar):
+def _add(m, touch, number, a, b, near):
     """Note the pair of bodies if its boxes are within reach of each other; the new number of pairs."""
+    period, extent, reach, planar = near
     if m[a, ROLE] == HELD and (m[b, ROLE] == HELD or b == len(m) - 1):
         return number
     moved = np.zeros(3)
@@ -104,11 +130,12 @@ def _add(m, pairs, shift, number, a, b, period, extent, reach, planar):
             return number
     by = (moved[0], moved[1], moved[2])
     feature, distance = best_feature(m, a, b, by, planar)
-    return _note(m, pairs, shift, number, a, b, feature, by) if distance <= reach else number
+    return _note(m, touch, number, a, b, feature, by) if distance <= reach else number
 
 
 @kernel
-def _note(m, pairs, shift, number, a, b, feature, by):
+def _note(m, touch, number, a, b, feature, by):
+    pairs, shift = touch.pairs, touch.shift
     for body in (a, b):
         if body >= 0 and m[body, ROLE] == ALONE:
             m[body, ROLE] = INVOLVED
@@ -127,28 +154,29 @@ def sort_pairs(pairs, shift, number):
 
 
 @kernel
-def fill_slots(m, first, elements, walls, pairs, shift, number, reach, marks, slots):
+def fill_slots(m, touch, first, number, reach):
     """List the elements of every pair that are within `reach`, m, of what they may touch; how many there are.
 
     Beyond the room in `slots` they are counted only. 10 ns an element of the bodies in a pair.
     """
-    slot = 0
+    pairs, slot = touch.pairs, 0
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
         own = first[a + 1] - first[a]
         pairs[c, FIRST] = slot
-        slot = _list(m, first, elements, walls, pairs, shift, c, a, b, 0, reach, marks, slots, slot)
+        slot = _list(m, touch, first, c, (a, b, 0), reach, slot)
         pairs[c, MIDDLE] = slot
         if 0 <= b < len(m) - 1:
-            slot = _list(m, first, elements, walls, pairs, shift, c, b, a, own, reach, marks, slots, slot)
+            slot = _list(m, touch, first, c, (b, a, own), reach, slot)
             own += first[b + 1] - first[b]
         pairs[c, LAST] = slot
-        slot = _mark(marks, slots, slot, pairs[c, KEY], own, -1)
+        slot = _mark(touch, slot, pairs[c, KEY], own, -1)
     return slot
 
 
 @kernel
-def _mark(marks, slots, slot, key, element, index):
+def _mark(touch, slot, key, element, index):
+    marks, slots = touch.marks, touch.slots
     if slot < len(marks):
         marks[slot, SLOT_KEY], marks[slot, ELEMENT], marks[slot, INDEX], marks[slot, TOUCHING] = key, element, index, 0
         for k in range(8):
@@ -157,8 +185,10 @@ def _mark(marks, slots, slot, key, element, index):
 
 
 @kernel
-def _list(m, first, elements, walls, pairs, shift, c, body, other, offset, reach, marks, slots, slot):
-    """Note the elements of `body` within reach of `other` (a body, the gate or a wall) from number `offset` on."""
+def _list(m, touch, first, c, which, reach, slot):
+    """Note the elements of a body within reach of another (a body, the gate or a wall) from a number on: `which`."""
+    elements, walls, pairs, shift = touch.elements, touch.walls, touch.pairs, touch.shift
+    body, other, offset = which
     sign = 1.0 if body == pairs[c, A] else -1.0
     _, t = pose_of(m, body, (0.0, 0.0, 0.0))
     for index in range(first[body], first[body + 1]):
@@ -176,7 +206,7 @@ def _list(m, first, elements, walls, pairs, shift, c, body, other, offset, reach
             for k in range(3):
                 near = near and abs(q[k]) < m[other, HALF + k] + far
         if near:
-            slot = _mark(marks, slots, slot, pairs[c, KEY], offset + index - first[body], index)
+            slot = _mark(touch, slot, pairs[c, KEY], offset + index - first[body], index)
     return slot
 
 

@@ -20,7 +20,7 @@ _CALM = 0.25  # how far, over their depth, such contacts may still move
 
 
 @kernel
-def advance(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, dt, reach, steps_per_contact, state):
+def advance(m, touch, number, dt, reach, steps_per_contact, state):
     """Move all bodies over `dt`, s; (touching elements, steps, energy dissipated, work of the gate).
 
     Sub-steps of equal length while something touches; until the first touch, as long as nothing can touch. `state`
@@ -34,18 +34,18 @@ def advance(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, 
         lost, state[0], state[1] = state[0], 0.0, 0.0
         return 0, 1, lost, 0.0
     lost, steps, work = state[0], 0, 0.0
-    touching = press(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, 0.0)
-    longest = _longest(m, elements, walls, law, pairs, shift, marks, slots, number, steps_per_contact, reach)
+    touching = press(m, touch, number, 0.0)
+    longest = _longest(m, touch, number, steps_per_contact, reach)
     rest, pending = dt, 0.0
     while rest > 0.0:
         count = max(math.ceil(rest / longest), 1)
         span = rest / count
         if touching == 0 and count > 1:
-            span = min(max(span, free_time(m, walls, pairs, shift, number, dt) - pending), rest)
+            span = min(max(span, free_time(m, touch, number, dt) - pending), rest)
         drift_involved(m, pending + 0.5 * span)
         lapse = state[1] + 0.5 * span
-        touching = press(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, lapse)
-        state[0] = restrain(m, pairs, shift, slots, tanks, number, span)
+        touching = press(m, touch, number, lapse)
+        state[0] = restrain(m, touch, number, span)
         heat, by_gate = kick_involved(m, span)
         lost, work, steps = lost + heat, work + by_gate, steps + 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
@@ -55,20 +55,21 @@ def advance(m, elements, walls, law, pairs, shift, marks, slots, tanks, number, 
 
 
 @kernel
-def _longest(m, elements, walls, law, pairs, shift, marks, slots, number, steps_per_contact, reach):
+def _longest(m, touch, number, steps_per_contact, reach):
     """Longest sub-step, s: the half period pi / sqrt(k A / m*) of a body on what it may touch, over the steps for it.
 
     All elements listed count as if they touched; a body's pairs are summed by rows of the matrix of k/m* n n, whose
     largest sum bounds its eigenvalues (Gershgorin) and with whole pairs those of chains. Pairs at rest on each other
     need only be stable: they take _AT_REST steps.
     """
+    pairs, shift = touch.pairs, touch.shift
     rate, largest = np.zeros((len(m), 3)), 0.0
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
-        apart, x, y, z = normal_of(m, walls, pairs, shift, c)
-        area = measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) if apart < 0.0 else 0.0
-        calm = _calm(m, law, pairs, shift, slots, c, (x, y, z), area) if area > 0.0 else False
-        rigid = _rate(m, elements, law, pairs, shift, marks, slots, c, (x, y, z))
+        apart, x, y, z = normal_of(m, touch, c)
+        area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
+        calm = _calm(m, touch, c, (x, y, z), area) if area > 0.0 else False
+        rigid = _rate(m, touch, c, (x, y, z))
         if b >= 0 and apart < 0.0:
             ramp = 4.0 * ramp_of(m, a, b)
             rigid *= min(overlap_share(m, a, b, three(shift, c, 0), x, y, z, ramp) + reach / ramp, 1.0)
@@ -85,10 +86,11 @@ def _longest(m, elements, walls, law, pairs, shift, marks, slots, number, steps_
 
 
 @kernel
-def _rate(m, elements, law, pairs, shift, marks, slots, c, n):
+def _rate(m, touch, c, n):
     """Square of the largest angular frequency, 1/s2, of pair `c` if all its elements touch."""
+    law, pairs, shift, slots = touch.law, touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    total, trace = show(m, elements, pairs, shift, marks, slots, c, n), 0.0
+    total, trace = show(m, touch, c, n), 0.0
     if total == 0.0:
         return 0.0
     for slot in range(first, last + 1):
@@ -99,8 +101,9 @@ def _rate(m, elements, law, pairs, shift, marks, slots, c, n):
 
 
 @kernel
-def _calm(m, law, pairs, shift, slots, c, n, area):
+def _calm(m, touch, c, n, area):
     """Whether a touching pair lies at rest: what speed and unbalanced force can move it is small against its depth."""
+    law, pairs, shift, slots = touch.law, touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     motion, volume, fastest = relative_motion(m, a, b, by), 0.0, 0.0
     x, y, z = motion[0]
@@ -130,12 +133,13 @@ def _acceleration(m, b, p, by, n):
 
 
 @kernel
-def elastic(m, elements, walls, law, pairs, shift, marks, slots, tanks, number):
+def elastic(m, touch, number):
     """Energy, J, that pairs can give back at the present pose: what their springs hold, at most their tanks."""
+    law, pairs, slots, tanks = touch.law, touch.pairs, touch.slots, touch.tanks
     energy = 0.0
     for c in range(number):
-        apart, x, y, z = normal_of(m, walls, pairs, shift, c)
-        if apart >= 0.0 or measure(m, elements, walls, pairs, shift, marks, slots, c, (x, y, z)) == 0.0:
+        apart, x, y, z = normal_of(m, touch, c)
+        if apart >= 0.0 or measure(m, touch, c, (x, y, z)) == 0.0:
             continue
         stiffness, potential = coefficients(m, law, pairs[c, A], pairs[c, B])[0], 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):

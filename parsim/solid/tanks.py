@@ -36,8 +36,9 @@ def room_for_tanks(count):
 
 
 @kernel
-def recall_tanks(pairs, number, tanks, key, stored):
+def recall_tanks(touch, number, key, stored):
     """Empty the first `number` tanks but for what is `stored` (n, 2), STORED and LOST, under their keys, in order."""
+    pairs, tanks = touch.pairs, touch.tanks
     old = 0
     for c in range(number):
         tanks[c, :] = 0.0
@@ -48,22 +49,24 @@ def recall_tanks(pairs, number, tanks, key, stored):
 
 
 @kernel
-def load_pair(m, pairs, shift, tanks, c, potential, shear, loads, losses):
+def load_pair(m, touch, c, potential, shear, loads, losses):
     """Let pair `c`, whose springs hold `potential`, J, `shear` of it, act on its bodies; loads are six numbers each."""
+    tanks = touch.tanks
     tanks[c, BEFORE], tanks[c, NOW] = tanks[c, NOW], potential
     tanks[c, SHEAR_BEFORE], tanks[c, SHEAR] = tanks[c, SHEAR], shear
     for k in range(6):
         tanks[c, LOADS + k], tanks[c, LOSSES + k] = loads[k], losses[k]
-    _apply(m, pairs, shift, tanks, c, 1.0)
+    _apply(m, touch, c, 1.0)
 
 
 @kernel
-def restrain(m, pairs, shift, slots, tanks, number, span):
+def restrain(m, touch, number, span):
     """Make loads smaller where in the coming kick of `span`, s, they would take more from a tank than it holds.
 
     Leaves the MEAN of all bodies; returns the energy in friction springs, J. 0.3 us a pair that touches, where nothing
     is too large.
     """
+    tanks = touch.tanks
     for c in range(number):
         tanks[c, STORED] = min(tanks[c, STORED], tanks[c, BEFORE] + tanks[c, NOW])
     rounds, over = 0, True
@@ -73,20 +76,21 @@ def restrain(m, pairs, shift, slots, tanks, number, span):
         for c in range(number):
             if tanks[c, NOW] == 0.0:
                 continue
-            tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
+            tanks[c, WORK], own = _work(m, touch, c, LOADS, span)
             if tanks[c, WORK] > tanks[c, STORED] + _ROUNDING * own:
                 over, share = True, 0.0
                 if rounds < _ROUNDS:
                     share = _share(tanks[c, WORK], own, tanks[c, STORED])
-                _apply(m, pairs, shift, tanks, c, share - 1.0)
-                _slacken(pairs, slots, tanks, c, share)
+                _apply(m, touch, c, share - 1.0)
+                _slacken(touch, c, share)
         rounds += 1
-    return _account(m, pairs, shift, tanks, number, span)
+    return _account(m, touch, number, span)
 
 
 @kernel
-def _slacken(pairs, slots, tanks, c, share):
+def _slacken(touch, c, share):
     """Leave pair `c` this share of its loads, and its friction springs the stretch that goes with theirs."""
+    pairs, slots, tanks = touch.pairs, touch.slots, touch.tanks
     for k in range(LOADS, LOSSES + 6):
         tanks[c, k] *= share
     tanks[c, SHEAR] *= share * share
@@ -96,13 +100,14 @@ def _slacken(pairs, slots, tanks, c, share):
 
 
 @kernel
-def _account(m, pairs, shift, tanks, number, span):
+def _account(m, touch, number, span):
     """Fill or drain the tanks by what the loads do in this kick; the energy in friction springs, J."""
+    tanks = touch.tanks
     shear = 0.0
     for c in range(number):
         if tanks[c, NOW] > 0.0:
             room = tanks[c, BEFORE] + tanks[c, NOW]
-            lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, pairs, shift, tanks, c, LOSSES, span)[0]
+            lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, touch, c, LOSSES, span)[0]
             lost = max(lost, -tanks[c, LOST])
             tanks[c, LOST] = min(tanks[c, LOST] + lost, room)
             tanks[c, STORED] = max(tanks[c, STORED] - tanks[c, WORK] - lost, 0.0)
@@ -119,8 +124,9 @@ def _share(work, own, stored):
 
 
 @kernel
-def _work(m, pairs, shift, tanks, c, at, span):
+def _work(m, touch, c, at, span):
     """(work of the loads of pair `c` in a kick, what of it they would do on bodies at rest), J."""
+    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
     a, b, f = pairs[c, A], pairs[c, B], _six(tanks, c, at)
     power, answer = _power(m, a, f)
     if b >= 0:
@@ -153,8 +159,9 @@ def _reaction(m, a, b, by, f):
 
 
 @kernel
-def _apply(m, pairs, shift, tanks, c, share):
+def _apply(m, touch, c, share):
     """Add this share of the loads of pair `c` to those of its bodies."""
+    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
     a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
     for at, to in ((LOADS, LOAD), (LOSSES, LOSS)):
         f = _six(tanks, c, at)

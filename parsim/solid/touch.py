@@ -10,8 +10,9 @@ _NOWHERE = (0.0, 0.0, 0.0)
 
 
 @kernel
-def normal_of(m, walls, pairs, shift, c):
+def normal_of(m, touch, c):
     """(distance of pair `c` along its direction, unit normal towards body a)."""
+    walls, pairs, shift = touch.walls, touch.pairs, touch.shift
     a, b = pairs[c, A], pairs[c, B]
     if b >= 0:
         return separation(m, a, b, three(shift, c, 0), pairs[c, FEATURE])
@@ -20,21 +21,22 @@ def normal_of(m, walls, pairs, shift, c):
 
 
 @kernel
-def measure(m, elements, walls, pairs, shift, marks, slots, c, n):
+def measure(m, touch, c, n):
     """Depth, area and place of all elements of pair `c` for the normal `n` into `slots`; the area that touches, m2.
 
     Elements of either body count half, or the area would count twice; against walls and the gate they count whole.
     """
+    walls, pairs, shift = touch.walls, touch.pairs, touch.shift
     a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
     here, opposite = pose_of(m, a, _NOWHERE), (-n[0], -n[1], -n[2])
     if b < 0:
-        return _against_plane(elements, marks, slots, first, last, here, n, walls[-1 - b, 3])
+        return _against_plane(touch, first, last, here, n, walls[-1 - b, 3])
     there, ramp = pose_of(m, b, by), ramp_of(m, a, b)
     share = overlap_share(m, a, b, by, n[0], n[1], n[2], 4.0 * ramp) * whole(m, b)
-    total = _in_box(elements, marks, slots, first, middle, here, there, three(m, b, HALF), n, ramp, share)
-    total += _in_box(elements, marks, slots, middle, last, there, here, three(m, a, HALF), opposite, ramp, share)
-    return total + _cross(m, pairs, by, slots, c, n, share)
+    total = _in_box(touch, first, middle, here, there, three(m, b, HALF), n, (ramp, share))
+    total += _in_box(touch, middle, last, there, here, three(m, a, HALF), opposite, (ramp, share))
+    return total + _cross(m, touch, by, c, n, share)
 
 
 @kernel
@@ -44,8 +46,9 @@ def whole(m, b):
 
 
 @kernel
-def _against_plane(elements, marks, slots, first, last, here, n, level):
+def _against_plane(touch, first, last, here, n, level):
     """Elements `first` to `last` of a body at the pose `here` against a plane: `slots` and the area that touches."""
+    elements, marks, slots = touch.elements, touch.marks, touch.slots
     (cx, cy, cz), t = here
     u, v, w = to_body(t, n[0], n[1], n[2])
     height, total = n[0] * cx + n[1] * cy + n[2] * cz - level, 0.0
@@ -74,10 +77,12 @@ def _set(slots, slot, depth, area, x, y, z):
 
 
 @kernel
-def _in_box(elements, marks, slots, first, last, here, there, edges, n, ramp, share):
+def _in_box(touch, first, last, here, there, edges, n, rim):
     """The same against a box at the pose `there`, depths along `n`; the rim of the contact takes from their area."""
+    elements, marks, slots = touch.elements, touch.marks, touch.slots
     (cx, cy, cz), t = here
     (bx, by, bz), s = there
+    ramp, share = rim
     u, v, w = to_body(t, n[0], n[1], n[2])
     along, total = to_body(s, n[0], n[1], n[2]), 0.0
     for slot in range(first, last):
@@ -92,8 +97,9 @@ def _in_box(elements, marks, slots, first, last, here, there, edges, n, ramp, sh
 
 
 @kernel
-def _cross(m, pairs, by, slots, c, n, share):
+def _cross(m, touch, by, c, n, share):
     """The crossing of two edges, where that is how the boxes touch: into the pair's last slot; its area."""
+    pairs, slots = touch.pairs, touch.slots
     slot, a, b, feature = pairs[c, LAST], pairs[c, A], pairs[c, B], pairs[c, FEATURE]
     slots[slot, DEPTH] = slots[slot, AREA] = 0.0
     if feature < 6:
@@ -106,15 +112,16 @@ def _cross(m, pairs, by, slots, c, n, share):
 
 
 @kernel
-def show(m, elements, pairs, shift, marks, slots, c, n):
+def show(m, touch, c, n):
     """Area, place and depth 1 of all elements of pair `c` into `slots`, as if all touched; their area, m2."""
+    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, far = pairs[c, A], pairs[c, B], three(shift, c, 0), 1e9
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
-    _against_plane(elements, marks, slots, first, middle, pose_of(m, a, _NOWHERE), n, far)
+    _against_plane(touch, first, middle, pose_of(m, a, _NOWHERE), n, far)
     if b >= 0:
         opposite = (-n[0], -n[1], -n[2])
-        _against_plane(elements, marks, slots, middle, last, pose_of(m, b, by), opposite, far)
-        _cross(m, pairs, by, slots, c, n, 1.0)
+        _against_plane(touch, middle, last, pose_of(m, b, by), opposite, far)
+        _cross(m, touch, by, c, n, 1.0)
     share, total = whole(m, b), 0.0
     for slot in range(first, last + 1):
         slots[slot, DEPTH] = 1.0
