@@ -66,7 +66,7 @@ def test_true_pairs_and_gathers_against_plain_sums():
     p, count, total = domain.particles, np.zeros(350), np.zeros(350)
     limits.true_pairs(near.fluid, near.lists, p.place, 0.2**2, count)
     fields = *p.place, *p.velocity, p.n, p.scale
-    limits.gathers(near.fluid, near.lists, *p.flow, p.n, p.scale, total)
+    limits.gathers(near.fluid, near.lists, *p.kinematics, p.n, p.scale, total)
     for i in near.fluid:
         row = near.index[near.start[i] : near.end[i]]
         r = np.sqrt((p.x[row] - p.x[i]) ** 2 + (p.y[row] - p.y[i]) ** 2 + (p.z[row] - p.z[i]) ** 2)

@@ -48,7 +48,7 @@ def shear_wave(p, across):
 
 
 def share_taken(scheme, damping, cfl=1.0):
-    """What a step at c0 = 1 m/s takes of the twofold sums, as `WCMPS.finish` has it."""
+    """What a step at c0 = 1 m/s takes of the twofold sums, as `WCMPS._finish` has it."""
     viscous = 2.0 * scheme.dimensions * (scheme.dimensions + 2) / scheme.number
     return damping * SPACING**3 * viscous**2 * cfl * SPACING
 

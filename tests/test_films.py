@@ -65,14 +65,14 @@ def test_a_drop_does_not_lift_what_it_falls_on():
 
 
 def test_patches_cover_the_body():
-    films = simulation(POOL | {"bodies": [FIXED | {"position": [0.2, 0.5, 0.15]}]}).models.films
+    films = simulation(POOL | {"bodies": [FIXED | {"position": [0.2, 0.5, 0.15]}]}).solids.films
     assert films._area.sum() == pytest.approx(4 * 0.06)
     assert films._rim.sum() == 8, "in 2D the rim of a face is its two ends"
 
 
 def test_gaps_are_measured_along_the_normal():
     ends = [-np.inf, -np.inf, -np.inf, 0.3, np.inf, np.inf]
-    floor, side = np.array([2.0, -1.0, 0.0, *ends]), np.array([0.0, 1.0, 0.5, *ends])
+    floor, side = np.array([0.0, 0.0, 1.0, 0.0, *ends]), np.array([-1.0, 0.0, 0.0, -0.5, *ends])
     down, slanted = (0.0, 0.0, -1.0), (0.0, 0.6, -0.8)
     assert gap_to_plane((0.2, 0.0, 0.03), down, floor) == pytest.approx(0.03)
     assert gap_to_plane((0.2, 0.0, 0.04), slanted, floor) == pytest.approx(0.05)
@@ -90,7 +90,7 @@ def test_water_inside_a_body_is_turned_out_through_the_nearest_face():
     p, near, b = s.domain.particles, s.near, s.bodies
     inside, outside = near.fluid[np.argsort(np.hypot(p.x[near.fluid] - 0.2, p.z[near.fluid] - 0.15))[:2]]
     p.x[inside], p.z[inside], p.w[inside] = 0.2, 0.178, -1.0
-    s.models.samples.keep_out(p, near, b.position, b.quaternion)
+    s.solids.samples.keep_out(p, near, b.position, b.quaternion)
     assert p.w[inside] == pytest.approx(0.5 + 0.002 / (5 * 0.01 / s.case.speed)) and p.u[inside] == 0.0
     assert p.w[outside] == p.u[outside] == 0.0
 

@@ -113,6 +113,12 @@ def lost_writes(function):
                         yield f"line {node.lineno}: {_last(root)}[...] is written, and lost"
 
 
+def crowded(function, most=8):
+    """What says that a kernel takes too many arguments: arrays that belong together go into a tuple by role."""
+    if (count := len(function.args.args)) > most:
+        yield f"takes {count} arguments, more than {most}"
+
+
 def _targets(assign):
     for target in assign.targets:
         yield from target.elts if isinstance(target, ast.Tuple) else [target]
@@ -164,7 +170,8 @@ def test_kernels_keep_their_bits(path):
     strict = name(path).removeprefix("parsim/").startswith(STRICT)
     faults = []
     for function in kernels(tree(path)):
-        faults += [f"{function.name} {fault}" for fault in (*reductions(function), *lost_writes(function))]
+        every = (*reductions(function), *lost_writes(function), *crowded(function))
+        faults += [f"{function.name} {fault}" for fault in every]
         faults += [f"{function.name} {fault}" for fault in arithmetic_faults(function) if strict]
     assert not faults
 

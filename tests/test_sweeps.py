@@ -203,7 +203,7 @@ def sweep(p, near, scheme):
 def momentum(p, near, weight, forces, around=None, lists=None):
     """The momentum sweep over all fluid into the fields of the particles; their concentrations."""
     around = around or tables.Around(np.zeros(len(p)), p.normal, p.vectors(VISCOUS))
-    sweeps.momentum(near.fluid, lists or near.lists, p.flow, tables.Pressures(p.p, p.scale, p.isotropy), weight,
+    sweeps.momentum(near.fluid, lists or near.lists, p.kinematics, tables.Pressures(p.p, p.scale, p.isotropy), weight,
                     forces, p.acceleration, around)
     return around.concentration
 
@@ -211,7 +211,7 @@ def momentum(p, near, weight, forces, around=None, lists=None):
 def reaction(p, near, weight, forces, acceleration, pressure):
     """What the boundary, whose samples have the acceleration (3, particles), gives back to the water."""
     out = tables.Reaction(*(np.empty((near.boundary.size, k)) for k in (3, 3, 6)))
-    sweeps.reaction(near.boundary, near.lists, p.flow, Vectors(*acceleration),
+    sweeps.reaction(near.boundary, near.lists, p.kinematics, Vectors(*acceleration),
                     tables.Pressures(pressure, p.scale, p.isotropy), weight, forces, out)
     return out
 
@@ -220,7 +220,7 @@ def continuity(p, near, weight, growth):
     """What the continuity sweep finds of the fluid."""
     rate, *rest = np.zeros((12, len(p)))
     out = tables.Change(rate, Vectors(*rest[:3]), Vectors(*rest[3:6]), Traceless(*rest[6:]))
-    sweeps.continuity(near.fluid, near.lists, p.flow, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
+    sweeps.continuity(near.fluid, near.lists, p.kinematics, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
                       weight, growth, out)
     return out
 

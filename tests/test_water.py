@@ -10,7 +10,7 @@ from parsim.domain.comm import Comm
 from parsim.observe.water import energies
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import GATE_DOWN, GATE_UP
-from parsim.particles.tables import Flow, Vectors
+from parsim.particles.tables import Kinematics, Vectors
 from parsim.run.fill import outside_box, taken_by_bodies, water
 from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
@@ -97,7 +97,7 @@ def test_the_elastic_energy_is_the_work_of_the_pressure():
     n0, sound2, mass = 20.0, 900.0, 1.7
     s = np.array([0.97, 0.999, 1.0, 1.003, 1.02])
     zero, out, gravity = np.zeros(5), np.zeros((5, 4)), (0.0, 0.0, -9.81)
-    flow = Flow(Vectors(zero, zero, zero + 2.0), Vectors(zero + 3.0, zero, zero))
+    flow = Kinematics(Vectors(zero, zero, zero + 2.0), Vectors(zero + 3.0, zero, zero))
     energies(np.arange(5), flow, n0 * s, (mass, n0, sound2), gravity, out)
     for row, end in zip(out, s, strict=True):
         middles = 1.0 + (end - 1.0) * (np.arange(2000) + 0.5) / 2000
@@ -143,7 +143,7 @@ def test_a_body_in_water_at_rest_is_carried_by_what_it_displaces():
 
 def test_the_samples_of_a_body_carry_its_volume():
     s = simulation(POOL | {"bodies": [SQUARE | {"shape": {"size": [0.064, 1.0, 0.057]}, "angles": [0.0, 30.0, 0.0]}]})
-    samples = s.models.samples
+    samples = s.solids.samples
     assert samples.scale.sum() * s.scheme.lattice.volume == pytest.approx(0.064 * 0.057, rel=1e-12)
     p = s.domain.particles
     at = np.flatnonzero(p.body == 0)

@@ -61,12 +61,13 @@ def sweeps(simulation, calls):
                             float(lattice.dimensions))
 
     def momentum(lists):
-        kernels.momentum(at, lists, p.flow, tables.Pressures(p.p, p.scale, p.isotropy), lattice.weight, forces, one,
-                         tables.Around(out[9], two, three))
+        kernels.momentum(at, lists, p.kinematics, tables.Pressures(p.p, p.scale, p.isotropy), lattice.weight, forces,
+                         one, tables.Around(out[9], two, three))
 
     def continuity(lists):
-        kernels.continuity(at, lists, p.flow, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS), lattice.weight,
-                           growth, tables.Change(out[0], two, three, Traceless(out[1], out[2], *out[9:])))
+        change = tables.Change(out[0], two, three, Traceless(out[1], out[2], *out[9:]))
+        kernels.continuity(at, lists, p.kinematics, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
+                           lattice.weight, growth, change)
 
     works = {
         "momentum": lambda: momentum(lists),

@@ -16,6 +16,7 @@ import numpy as np
 
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
+from parsim.geometry.faces import repeats
 from parsim.run.warm import exercise, prepare
 
 _WARM = 5  # steps
@@ -25,7 +26,7 @@ _CALLS = 7  # of a single sweep; the fastest counts
 def measure(order):
     """Run what the order asks for; returns the figures (dict), the same on all ranks but for times."""
     case = parse(order["case"])
-    comm = Comm(case.box.faces.x_min == "periodic")
+    comm = Comm(repeats(case)[0])
     if order.get("messages"):
         return {"messages": _messages(comm)}
     prepare()
@@ -77,7 +78,7 @@ def _timed(simulation, recorder, order):
     phases = {name: spent - earlier.get(name, 0.0) for name, spent in simulation.timers.seconds.items()}
     return {"wall_s": wall, "work": work, "steps": count, "rate": work / wall, "phases": phases,
             "rebuilds": simulation.rebuilds - rebuilds, "active": simulation.active, "fluid": simulation.fluid_count,
-            "all": simulation.fluid_count + len(simulation.models.walls) + len(simulation.models.samples),
+            "all": simulation.fluid_count + len(simulation.solids.walls) + len(simulation.solids.samples),
             "halo": len(simulation.domain.particles) - simulation.domain.border.size,
             "uneven": simulation.uneven[0], "uneven_most": simulation.uneven[1]}
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 
+from parsim.geometry.faces import SIDES
 from parsim.particles.state import WALL, Particles, make_id
-
-_SIDES = (("x_min", "x_max"), ("y_min", "y_max"), ("z_min", "z_max"))
 
 
 def lattice_axis(case, axis, layers):
@@ -12,7 +11,7 @@ def lattice_axis(case, axis, layers):
     if case.dimensions == 2 and axis == 1:
         return np.array([0.5]), np.zeros(1, np.int64)
     count = round(case.box.size[axis] / case.spacing)
-    below, above = (layers if getattr(case.box.faces, side) == "wall" else 0 for side in _SIDES[axis])
+    below, above = (layers if getattr(case.box.faces, side) == "wall" else 0 for side in SIDES[axis])
     index = np.arange(-below, count + above)
     side = (index >= count).astype(np.int64) - (index < 0)
     return case.box.min[axis] + (index + 0.5) * case.spacing, side
@@ -24,22 +23,6 @@ def samples_of(kind, x, y, z):
     flat = [axis.ravel() for axis in grid]
     count = flat[0].size
     return Particles(count, id=make_id(kind, np.arange(count)), kind=kind, x=flat[0], y=flat[1], z=flat[2])
-
-
-def walled_sides(case):
-    """Axis, side (-1 low, 1 high) and level, m, of each side of the box that is a wall."""
-    for axis in case.axes:
-        for sign, name, level in zip((-1, 1), _SIDES[axis], (case.box.min[axis], case.box.max[axis]), strict=True):
-            if getattr(case.box.faces, name) == "wall":
-                yield axis, sign, level
-
-
-def ends_of_walls(case):
-    """Lowest and highest corner (3,), m, of where there are walls: they end at the open sides, and only there."""
-    faces = case.box.faces
-    low = [case.box.min[a] if getattr(faces, low) == "open" else -np.inf for a, (low, _) in enumerate(_SIDES)]
-    high = [case.box.max[a] if getattr(faces, high) == "open" else np.inf for a, (_, high) in enumerate(_SIDES)]
-    return np.array(low), np.array(high)
 
 
 class Walls:

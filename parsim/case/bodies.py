@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from parsim.boundary.wall import walled_sides
 from parsim.case.fill import TOUCH, water_at
 from parsim.errors import nearest, suggestion
 from parsim.geometry import boxes as geometry
+from parsim.geometry.faces import period, repeats, walled_sides
 
 GAUGE_REACH = 1.5  # spacings: a gauge reads the highest water within this distance
 PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
@@ -90,7 +90,7 @@ def _outside(case, body):
     low, high = corners.min(axis=0), corners.max(axis=0)
     for axis in case.axes:
         name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
-        if getattr(case.box.faces, f"{name}_min") == "periodic":
+        if repeats(case)[axis]:
             low[axis] = high[axis] = body.position[axis]
         if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
             yield (
@@ -120,9 +120,8 @@ def overlaps(case):
     """No body is inside another or inside the gate."""
     present = placed(case)
     boxes = [geometry.of_body(body) for body in present]
-    period = [_period(case, axis) for axis in range(3)]
     faults = []
-    for i, j, shift in geometry.near_pairs(boxes, period):
+    for i, j, shift in geometry.near_pairs(boxes, period(case)):
         depth = geometry.overlap(boxes[i], boxes[j], shift)
         if depth > TOUCH:
             faults.append(f"bodies.{present[j].name}: overlaps bodies.{present[i].name} by {depth:.3g} m")
@@ -133,11 +132,6 @@ def overlaps(case):
                 f"bodies.{body.name}: is in the gate, x = {case.gate.min_x!r} to {case.gate.max_x!r}, by {depth:.3g} m"
             )
     return faults
-
-
-def _period(case, axis):
-    name = "xyz"[axis]
-    return case.box.size[axis] if getattr(case.box.faces, f"{name}_min") == "periodic" else 0.0
 
 
 def _gate_box(case):
@@ -184,7 +178,7 @@ def narrow_passages(case):
              sign * (level - box.centre[axis]) - box.reach[axis])
             for i, box in enumerate(boxes) for axis, sign, level in walled_sides(case)]  # fmt: skip
     gaps += [(i, f"bodies.{fixed[j].name}", -geometry.overlap(boxes[i], boxes[j], shift))
-             for i, j, shift in geometry.near_pairs(grown, [_period(case, axis) for axis in range(3)])]
+             for i, j, shift in geometry.near_pairs(grown, period(case))]
     return [(fixed[i].name, other, gap) for i, other, gap in gaps if TOUCH < gap < widest - TOUCH]
 
 

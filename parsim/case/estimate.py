@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from parsim.boundary.wall import walled_sides
 from parsim.geometry import boxes as geometry
+from parsim.geometry.faces import walled_sides
 from parsim.particles.state import FIELDS, WATER_BYTES
 
 RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from parsim.case.messages import short
 from parsim.geometry import boxes as geometry
 
 TOUCH = 1e-9  # m: a smaller overlap or gap is rounding
@@ -36,20 +35,10 @@ def level_over(fills, fill, x, y):
 
 
 def profile_shares(fill, z):
-    """The velocity at heights z (n,) over the mean of the fill: (n,).
-
-    Logarithmic: u ~ ln(30 z / ks) above a fully rough bed (Nikuradse 1933), whose mean over the depth H is
-    ln(30 H / ks) - 1 + ks / (30 H), for nothing flows backward below ks / 30.
-    """
-    above, depth, profile = z - fill.min[2], fill.max[2] - fill.min[2], fill.profile
-    if profile is None:
+    """The velocity at heights z (n,) over the mean of the fill: (n,)."""
+    if fill.profile is None:
         return np.ones(z.size)
-    if profile.kind == "linear":
-        return profile.bottom + 2.0 * (1.0 - profile.bottom) * above / depth
-    if profile.kind == "table":
-        return np.interp(above, profile.heights, profile.shares)
-    rough = profile.roughness / 30.0
-    return np.log(np.maximum(above / rough, 1.0)) / (math.log(depth / rough) - 1.0 + rough / depth)
+    return fill.profile.at(z - fill.min[2], fill.max[2] - fill.min[2])
 
 
 def faults(case):
@@ -85,29 +74,9 @@ def _place(case, fill):
 
 
 def _profile(fill):
-    """What a profile lacks, or has too much of, for its kind."""
-    profile, depth = fill.profile, fill.max[2] - fill.min[2]
-    if profile is None:
-        return
-    if profile.kind == "log" and profile.roughness is None:
-        yield 'profile.roughness: missing; required for kind = "log"'
-    elif profile.kind == "log" and not profile.roughness < 10.0 * depth:
-        limit = f"{10.0 * depth:.6g} m"
-        yield f"profile.roughness = {profile.roughness!r}: must be less than ten depths of the fill, {limit}"
-    if profile.kind == "table":
-        ascending = all(low < high for low, high in zip(profile.heights, profile.heights[1:], strict=False))
-        heights = short(list(profile.heights))
-        if len(profile.heights) < 2 or not ascending:
-            yield f"profile.heights = {heights}: must be two or more, ascending"
-        elif profile.heights[0] < -TOUCH or profile.heights[-1] > depth + TOUCH:
-            yield f"profile.heights = {heights}: must be heights in the fill, 0 to {depth:.6g} m above its bottom"
-        if len(profile.shares) != len(profile.heights):
-            yield f"profile.shares: {len(profile.shares)} entries for {len(profile.heights)} heights; must be as many"
-    used = {"linear": {"bottom"}, "log": {"roughness"}, "table": {"heights", "shares"}}[profile.kind]
-    given = [key for key, field in type(profile).model_fields.items() if getattr(profile, key) != field.default]
-    for key in given:
-        if key not in used | {"kind"}:
-            yield f'profile.{key}: not used by kind = "{profile.kind}"; allowed with it: {", ".join(sorted(used))}'
+    """What is wrong with a profile in the depth of its fill."""
+    if fill.profile is not None:
+        yield from (f"profile.{text}" for text in fill.profile.faults(fill.max[2] - fill.min[2]))
 
 
 def _shares(fill):

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ValidationError
 
 from parsim.errors import InputError, nearest, suggestion
 
+CHOICE = "kind"  # the key that names which of several tables is meant
 _ALLOWED = {
     "missing": "missing",
     "float_type": "must be a number",
@@ -18,6 +19,7 @@ _ALLOWED = {
     "tuple_type": "must be a list",
     "dict_type": "must be a table",
     "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
     "literal_error": "must be {expected}",
     "greater_than": "must be greater than {gt}",
     "greater_than_equal": "must be at least {ge}",
@@ -39,18 +41,36 @@ def validated(model, data):
         try:
             return model.model_validate(data), messages
         except ValidationError as error:
-            faults = error.errors(include_url=False)
+            faults = [_placed(data, fault) for fault in error.errors(include_url=False)]
         unknown = [fault["loc"] for fault in faults if fault["type"] == "extra_forbidden"]
         if not unknown:
             raise InputError(messages + _described(model, data, faults))
         messages += [_mended(model, data, place) for place in unknown]
 
 
+def _placed(data, fault):
+    """A fault with its place as in the file: where there is a choice of tables pydantic puts in which was chosen."""
+    place, value = [], data
+    for step in fault["loc"]:
+        if isinstance(value, dict) and step not in value and step == value.get(CHOICE):
+            continue
+        place.append(step)
+        value = _step(value, step)
+    changed = {"loc": tuple(place)}
+    if fault["type"] == "union_tag_invalid":
+        *others, last = fault["ctx"]["expected_tags"].split(", ")
+        changed = {"loc": (*place, CHOICE), "type": "literal_error",
+                   "ctx": {"expected": f"{', '.join(others)} or {last}"}}
+    elif fault["type"] == "union_tag_not_found":
+        changed = {"loc": (*place, CHOICE), "type": "missing"}
+    return fault | changed
+
+
 def _mended(model, data, place):
     """Message about the unknown key at `place`; renames it in `data` to what was meant, or drops it."""
     table = _value_at(data, place[:-1])
     value = table.pop(place[-1])
-    known = list(_model_at(model, place[:-1]).model_fields)
+    known = list(_model_at(model, data, place[:-1]).model_fields)
     path = key_path(data, place)
     meant = nearest(place[-1], known)
     if meant is not None:
@@ -72,7 +92,7 @@ def _described(model, data, faults):
 
 
 def _message(model, data, place, texts):
-    path, meaning = key_path(data, place), _description(model, place)
+    path, meaning = key_path(data, place), _description(model, data, place)
     if "missing" in texts:
         return f"{path}: missing; {meaning}" if meaning else f"{path}: missing; required"
     allowed = " or ".join(text if i == 0 else text.removeprefix("must be ") for i, text in enumerate(texts))
@@ -120,39 +140,56 @@ def _within(data, place, missing):
     return place
 
 
-def _inner(annotation):
-    """The table model inside an annotation such as Gate | None, tuple[Body, ...] or dict[str, Material], or None."""
+def _tables(annotation):
+    """The table models inside an annotation such as Gate | None, tuple[Body, ...], dict[str, Material] or a choice."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    return next(filter(None, map(_inner, get_args(annotation))), None)
+        return [annotation]
+    return [table for part in get_args(annotation) for table in _tables(part)]
 
 
-def _model_at(model, place):
+def _chosen(tables, value):
+    """That of the tables which is of the kind that the dict `value` names, else the first."""
+    kind = value.get(CHOICE) if isinstance(value, dict) else None
+    named = [table for table in tables if kind in get_args(getattr(table.model_fields.get(CHOICE), "annotation", None))]
+    return (named or tables or [None])[0]
+
+
+def _model_at(model, data, place):
     """The table model at `place` below `model`; steps that choose an entry of a list or table are passed over."""
     steps = iter(place)
     for step in steps:
-        annotation = model.model_fields[step].annotation
+        annotation, data = model.model_fields[step].annotation, _step(data, step)
         if get_origin(annotation) in (tuple, dict):
-            next(steps, None)
-        model = _inner(annotation)
+            data = _step(data, next(steps, None))
+        model = _chosen(_tables(annotation), data)
     return model
 
 
-def _description(model, place):
+def _description(model, data, place):
     """What the key at `place` means, from the model, or an empty text."""
     names = [i for i, step in enumerate(place) if isinstance(step, str)]
     if not names:
         return ""
-    table = _model_at(model, place[: names[-1]])
-    field = table.model_fields.get(place[names[-1]])
+    *above, key = place[: names[-1] + 1]
+    field = _model_at(model, data, above).model_fields.get(key)
+    if key == CHOICE and (kinds := _kinds(model, data, above)):
+        return f"one of {', '.join(map(repr, kinds))}"
     return field.description if field else ""
+
+
+def _kinds(model, data, place):
+    """What a key CHOICE of the table at `place` may be, where there is a choice of tables."""
+    *above, last = place
+    above = above[:-1] if isinstance(last, int) else above
+    annotation = _model_at(model, data, above).model_fields[last].annotation if isinstance(last, str) else None
+    tables = _tables(annotation)
+    return [get_args(table.model_fields[CHOICE].annotation)[0] for table in tables] if tables[1:] else []
 
 
 def _all_keys(model, path=""):
     """(key, full path) of every key of every table, the nearest to the top last."""
     for name, field in reversed(model.model_fields.items()):
-        inner = _inner(field.annotation)
-        if inner:
+        for inner in _tables(field.annotation):
             many = ".NAME" if get_origin(field.annotation) in (tuple, dict) else ""
             yield from _all_keys(inner, f"{path}{name}{many}.")
         yield name, path + name

@@ -9,32 +9,29 @@ import math
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, Strict
+from pydantic import Field
 
 from parsim.case.checks import checked, doubts
 from parsim.case.file import read, replaced, written
 from parsim.case.messages import validated
-
-Real = Annotated[float, Strict()]
-Whole = Annotated[int, Strict()]
-Number = Annotated[Real, Field(ge=-1e9, le=1e9)]
-Positive = Annotated[Real, Field(gt=0, le=1e15)]
-NotNegative = Annotated[Real, Field(ge=0, le=1e15)]
-Share = Annotated[Real, Field(ge=0, le=1)]
-Count = Annotated[Whole, Field(ge=1, le=10**9)]
-Switch = Annotated[bool, Strict()]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,63}$")]
-Vector = tuple[Number, Number, Number]
-Moderate = Annotated[Real, Field(ge=1e-9, le=1e9)]
-Size = tuple[Moderate, Moderate, Moderate]
-Place = tuple[Number, Number, Number | Literal["float"]]
-Face = Literal["wall", "open", "periodic"]
-
-
-class Table(BaseModel):
-    """A table of the case file: frozen, unknown keys refused, no silent conversion of types."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+from parsim.case.types import (
+    Count,
+    Face,
+    Moderate,
+    Name,
+    NotNegative,
+    Number,
+    Place,
+    Positive,
+    Real,
+    Share,
+    Size,
+    Switch,
+    Table,
+    Vector,
+    Whole,
+)
+from parsim.fluid.profiles import Profile
 
 
 class Faces(Table):
@@ -61,25 +58,15 @@ class Box(Table):
         return tuple(high - low for low, high in zip(self.min, self.max, strict=True))
 
 
-class Profile(Table):
-    """How the velocity of a fill varies over its depth: as a share of its mean."""
-
-    kind: Literal["linear", "log", "table"] = Field(description="linear, logarithmic, or a table of shares by height")
-    bottom: Annotated[Real, Field(ge=0, le=2)] = Field(
-        0.0, description="linear: share at the bottom; at the top it is 2 less this"
-    )
-    roughness: Moderate | None = Field(None, description="log: roughness ks of the bed, m; u ~ ln(30 z / ks)")
-    heights: tuple[Number, ...] = Field((), description="table: heights above the bottom of the fill, m, ascending")
-    shares: tuple[Number, ...] = Field((), description="table: shares of the mean at these heights")
-
-
 class Fill(Table):
     """A box of water at the start; bodies and the gate are cut out of it."""
 
     min: Vector = Field(description="lowest corner, m")
     max: Vector = Field(description="highest corner, m; its z is the water level, floating bodies included")
     velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity at t = 0, m/s; of a profile its mean")
-    profile: Profile | None = Field(None, description="how the velocity varies over the depth; left out: not at all")
+    profile: Profile | None = Field(
+        None, description="how the velocity varies over the depth, as a share of its mean; left out: not at all"
+    )
 
 
 class Water(Table):

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.boundary.wall import ends_of_walls, walled_sides
 from parsim.fluid.weights.choice import weight_at
+from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY
@@ -80,8 +80,8 @@ class Films:
         self._spacing, self._weight = case.spacing, lattice.weight
         self._head = case.water.density * np.array(case.gravity)
         self._layer, self._deep = _layers(lattice)
-        self._planes = _planes(case)
-        self._period = case.box.size[0] if case.box.faces.x_min == "periodic" else math.inf
+        self._planes = planes_of_walls(case)
+        self._period = float(period(case)[0])
         self._axes = case.axes
         self._patches()
 
@@ -158,22 +158,15 @@ def _layers(lattice):
     return first, math.fsum(w * up * (lattice.spacing / r) ** 2 for w, r, up in points)
 
 
-def _planes(case):
-    """The walls of the box: rows (axis, side, level, lowest and highest corner), side -1 for the low ones."""
-    ends = np.concatenate(ends_of_walls(case))
-    return np.array([(*side, *ends) for side in walled_sides(case)], float).reshape(-1, 9)
-
-
 @kernel
 def gap_to_plane(x, n, plane):
     """Distance along the direction n (3,) from x (3,) to a wall in front of it; inf where it faces away or ends."""
-    a = int(plane[0])
-    along = n[a] * plane[1]
+    along = -(n[0] * plane[0] + n[1] * plane[1] + n[2] * plane[2])
     if along <= 0.5:
         return np.inf
-    gap = (plane[2] - x[a]) * plane[1] / along
+    gap = (x[0] * plane[0] + x[1] * plane[1] + x[2] * plane[2] - plane[3]) / along
     for k in range(3):
-        if not plane[3 + k] <= x[k] + (gap * n[k] if k != a else 0.0) <= plane[6 + k]:
+        if not plane[4 + k] <= x[k] + (gap * n[k] if plane[k] == 0.0 else 0.0) <= plane[7 + k]:
             return np.inf
     return gap
 

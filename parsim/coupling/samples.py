@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.errors import InputError
+from parsim.geometry.inside import nearest_face
 from parsim.geometry.rotation import matrices
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, Particles, make_id
@@ -86,7 +87,7 @@ class BodySamples:
         Velocity and acceleration are those of the rigid motion; returns nothing.
         """
         motion = self._motion(position, quaternion)
-        place_samples(p.kind, p.body, p.sample, self.offsets, motion, p.flow, p.acceleration)
+        place_samples(p.kind, p.body, p.sample, self.offsets, motion, p.kinematics, p.acceleration)
 
     def _motion(self, position, quaternion):
         b = self.bodies
@@ -95,7 +96,7 @@ class BodySamples:
     def loads(self, domain, near, force, response, centre, others, rows):
         """Sums over all ranks about `centre` (bodies, 3): loads, N and N m, films (3 arrays), added inertia.
 
-        `force` (samples, 3), `response` (samples, 6): see `WCMPS.react`; `others` (n, 6) at `rows` (n,): see
+        `force` (samples, 3), `response` (samples, 6): see `WCMPS._react`; `others` (n, 6) at `rows` (n,): see
         `Films.loads`. Loads and films are (bodies, 6); the inertia that the water adds is (bodies, 24): the upper
         triangle of a symmetric matrix of six by rows, kg, kg m and kg m2, then zeros.
         """
@@ -135,7 +136,7 @@ class BodySamples:
         are single particles.
         """
         motion = self._motion(position, quaternion)
-        expel(self._beside, near.lists, p.body, motion, self.bodies.half, self._axes, self._way_out, p.flow)
+        expel(self._beside, near.lists, p.body, motion, self.bodies.half, self._axes, self._way_out, p.kinematics)
 
 
 @kernel
@@ -151,11 +152,11 @@ def locate(offsets, body, position, turn, place):
 
 
 @kernel
-def place_samples(kind, body, sample, offsets, motion, flow, out):
+def place_samples(kind, body, sample, offsets, motion, kinematics, out):
     """Position, velocity and acceleration `out` of every body sample from the rigid motion of its body."""
     position, turn, velocity, spin, acceleration, angular = motion
-    x, y, z = flow.place
-    u, v, w = flow.velocity
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
     ax, ay, az = out
     for i in range(kind.size):
         if kind[i] != BODY:
@@ -176,12 +177,12 @@ def place_samples(kind, body, sample, offsets, motion, flow, out):
 
 
 @kernel
-def expel(at, lists, body, motion, half, axes, way_out, flow):
+def expel(at, lists, body, motion, half, axes, way_out, kinematics):
     """Velocity of fluid inside a body: outward through the nearest face, at least its depth in `way_out` s."""
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion
-    x, y, z = flow.place
-    u, v, w = flow.velocity
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
     for i in at:
         last = -1
         for s in range(middle[i], end[i]):
@@ -189,14 +190,10 @@ def expel(at, lists, body, motion, half, axes, way_out, flow):
             if b < 0 or b == last:
                 continue
             last = b
-            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
-            depth, axis, sign = np.inf, 0, 1.0
-            for a in axes:
-                along = turn[b, 0, a] * dx + turn[b, 1, a] * dy + turn[b, 2, a] * dz
-                if half[b, a] - abs(along) < depth:
-                    depth, axis, sign = half[b, a] - abs(along), a, 1.0 if along > 0.0 else -1.0
+            depth, axis, sign = nearest_face((x[i], y[i], z[i]), b, position, turn, half, axes)
             if depth <= 0.0:
                 continue
+            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
             nx, ny, nz = sign * turn[b, 0, axis], sign * turn[b, 1, axis], sign * turn[b, 2, axis]
             p, q, r = spin[b]
             away = ((u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny

@@ -3,6 +3,7 @@
 import math
 
 from parsim.errors import InputError
+from parsim.geometry.faces import repeats
 from parsim.particles.cells import HALO, REACH, Grid
 
 
@@ -27,9 +28,9 @@ def reach_of(case):
 def grid_of(case):
     """The global grid: the box, and beyond its walls and open sides the depth of the wall particles."""
     beyond, reach = layers_of(case) * case.spacing, reach_of(case)
-    periodic = [getattr(case.box.faces, f"{axis}_min") == "periodic" for axis in "xyz"]
+    periodic = repeats(case)
     low = [c if p else c - beyond for c, p in zip(case.box.min, periodic, strict=True)]
     high = [c if p else c + beyond for c, p in zip(case.box.max, periodic, strict=True)]
     if case.dimensions == 2:  # one cell across
-        periodic[1], low[1], high[1] = False, 0.5 - reach / (2 * REACH), 0.5 + reach / (2 * REACH)
+        low[1], high[1] = 0.5 - reach / (2 * REACH), 0.5 + reach / (2 * REACH)
     return Grid(low, high, reach, periodic)

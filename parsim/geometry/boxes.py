@@ -65,14 +65,15 @@ def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     return float(np.min(reach - np.abs(directions @ between)))
 
 
-def near_pairs(boxes, period=(0.0, 0.0, 0.0)):
+def near_pairs(boxes, period=(np.inf, np.inf, np.inf)):
     """Yield (i, j, shift) of boxes whose extents overlap, j > i; `shift` moves j to its nearest periodic image."""
     centres = np.array([box.centre for box in boxes]).reshape(-1, 3)
     reaches = np.array([box.reach for box in boxes]).reshape(-1, 3)
     period = np.asarray(period)
+    length = np.where(np.isfinite(period), period, 0.0)
     for i in range(len(boxes) - 1):
         between = centres[i + 1 :] - centres[i]
-        shifts = -period * np.round(between / np.where(period > 0, period, np.inf))
+        shifts = -length * np.round(between / period)
         near = np.all(np.abs(between + shifts) < reaches[i + 1 :] + reaches[i], axis=1)
         for j in np.flatnonzero(near):
             yield i, i + 1 + int(j), shifts[j]

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from parsim.boundary.wall import ends_of_walls, walled_sides
 from parsim.case.bodies import GAUGE_REACH
+from parsim.geometry.faces import planes_of_walls
 from parsim.geometry.rotation import matrices
 from parsim.observe import water
 
@@ -13,9 +13,7 @@ class Measure:
 
     def __init__(self, case, simulation):
         self.case = case
-        self.ends, self.walls = np.array(ends_of_walls(case)), np.repeat([[-np.inf], [np.inf]], 3, axis=1)
-        for axis, sign, level in walled_sides(case):
-            self.walls[int(sign > 0), axis] = level
+        self.walls, self.axes = planes_of_walls(case), np.array(case.axes)
         middle = 0.5 * (case.box.min[1] + case.box.max[1])
         self.gauges = np.array([[g.x, middle if g.y is None else g.y] for g in case.output.gauges]).reshape(-1, 2)
 
@@ -32,8 +30,8 @@ class Measure:
 
     def _energy(self, s):
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 4))
-        water.energies(at, p.flow, p.n, (s.scheme.mass, s.scheme.lattice.number, s.scheme.sound**2), self.case.gravity,
-                       out)
+        constants = s.scheme.mass, s.scheme.lattice.number, s.scheme.sound**2
+        water.energies(at, p.kinematics, p.n, constants, self.case.gravity, out)
         kinetic, potential, elastic, volume = (float(value) for value in s.domain.sum(out))
         self.volume = volume * s.scheme.lattice.volume  # of m / rho, not of N
         b, c = s.bodies, s.contacts
@@ -44,12 +42,11 @@ class Measure:
     def _counts(self, s):
         p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
         gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)
-        water.misplaced(at, p.place, (self.walls, self.ends),
-                        (s.bodies.position, matrices(s.bodies.quaternion), s.bodies.half), gate,
-                        0.25 * self.case.spacing, count)
+        bodies = s.bodies.position, matrices(s.bodies.quaternion), s.bodies.half, self.axes
+        water.misplaced(at, p.place, self.walls, bodies, gate, 0.25 * self.case.spacing, count)
         surface = water.count_surface(at, p.surface)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, surface)
-        every = fluid + len(s.models.walls) + len(s.models.samples)
+        every = fluid + len(s.solids.walls) + len(s.solids.samples)
         return [fluid, s.active, every, *rest, self.volume, int(s.bodies.gone.sum())]
 
     def _front(self, s):

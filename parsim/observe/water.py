@@ -4,19 +4,20 @@ import math
 
 import numpy as np
 
+from parsim.geometry.inside import nearest_face
 from parsim.machine.jit import kernel
 from parsim.particles.state import DETACHED, SURFACE
 
 
 @kernel
-def energies(at, flow, n, water, gravity, out):
+def energies(at, kinematics, n, water, gravity, out):
     """Kinetic, potential and elastic energy, J, and m / rho over m / rho0 of each fluid particle `at`: out (n, 4).
 
     Elastic: what the pair forces put into n, the integral of p / (rho0 s) over s = n / n0 of the state,
     c0^2 / 7 ((s^7 - 1) / 7 - ln s). `water`: mass of a particle, kg, n0, c0^2, m2/s2; gravity (3,), m/s2.
     """
-    x, y, z = flow.place
-    u, v, w = flow.velocity
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
     mass, n0, sound2 = water
     gx, gy, gz = gravity
     for row in range(at.size):
@@ -33,28 +34,24 @@ def energies(at, flow, n, water, gravity, out):
 def misplaced(at, place, walls, bodies, gate, slack, count):
     """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
 
-    walls: lowest and highest corner between them, infinite where there is none, (2, 3), and of where there are walls,
-    (2, 3); bodies: centre (b, 3), turn (b, 3, 3), half (b, 3); gate: its low and high x, and where it ends below, m.
+    walls: see `geometry.faces.planes_of_walls`; bodies: centre (b, 3), turn (b, 3, 3), half (b, 3), axes; gate: its low
+    and high x, and where it ends below, m.
     """
     x, y, z = place
-    between, ends = walls
-    centre, turn, half = bodies
-    gate_low, gate_high, barrier = gate
+    centre, turn, half, axes = bodies
+    low, high, barrier = gate
     for i in at:
-        r, within, behind = (x[i], y[i], z[i]), True, False
-        for a in range(3):
-            within = within and ends[0, a] <= r[a] <= ends[1, a]
-            behind = behind or r[a] < between[0, a] - slack or r[a] > between[1, a] + slack
-        count[0] += within and behind
-        for b in range(centre.shape[0]):
-            inside = True
+        r, behind = (x[i], y[i], z[i]), False
+        for w in range(len(walls)):
+            within = True
             for a in range(3):
-                local = 0.0
-                for c in range(3):
-                    local += turn[b, c, a] * (r[c] - centre[b, c])
-                inside = inside and abs(local) < half[b, a] - slack
-            count[1] += inside
-        count[2] += gate_low + slack < r[0] < gate_high - slack and r[2] > barrier + slack
+                within = within and walls[w, 4 + a] <= r[a] <= walls[w, 7 + a]
+            height = walls[w, 0] * r[0] + walls[w, 1] * r[1] + walls[w, 2] * r[2] - walls[w, 3]
+            behind = behind or (within and height < -slack)
+        count[0] += behind
+        for b in range(len(centre)):
+            count[1] += nearest_face(r, b, centre, turn, half, axes)[0] > slack
+        count[2] += low + slack < r[0] < high - slack and r[2] > barrier + slack
 
 
 @kernel

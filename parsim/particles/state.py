@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.particles.tables import Flow, Traceless, Vectors
+from parsim.particles.tables import Kinematics, Traceless, Vectors
 
 FLUID, BODY, GATE_UP, GATE_DOWN, WALL = 0, 1, 2, 3, 4
 INTERNAL, VICINITY, SURFACE, DETACHED = 0, 1, 2, 3
@@ -104,9 +104,9 @@ class Particles:
         return self.vectors(VELOCITY)
 
     @property
-    def flow(self):
+    def kinematics(self):
         """Place and velocity."""
-        return Flow(self.place, self.velocity)
+        return Kinematics(self.place, self.velocity)
 
     @property
     def acceleration(self):

@@ -18,7 +18,7 @@ class Vectors(NamedTuple):
     z: np.ndarray
 
 
-class Flow(NamedTuple):
+class Kinematics(NamedTuple):
     """Where the particles are, m, and their velocity, m/s."""
 
     place: Vectors

@@ -7,8 +7,8 @@ the bodies first, whole rows thinned evenly. Only what lies beside bodies is loo
 
 import numpy as np
 
-from parsim.boundary.wall import walled_sides
 from parsim.case.fill import level_over, profile_shares
+from parsim.geometry.faces import walled_sides
 from parsim.geometry.rotation import matrices
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, Particles, make_id

@@ -5,6 +5,7 @@ from pathlib import Path
 from parsim.domain.comm import Comm
 from parsim.domain.grid import check_ranks
 from parsim.errors import RunError
+from parsim.geometry.faces import repeats
 from parsim.launch import mpirun
 from parsim.launch.stop import STOPPED, Stop
 from parsim.launch.watch import Watch
@@ -36,7 +37,7 @@ def resume(found, folder, walltime=None):
 
 
 def _comm(case):
-    comm = Comm(case.box.faces.x_min == "periodic")
+    comm = Comm(repeats(case)[0])
     mpirun.check(comm.size)
     check_ranks(case, comm.size)
     return comm

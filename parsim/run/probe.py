@@ -37,7 +37,7 @@ def _seconds():
     from parsim.fluid import weights
     from parsim.fluid.wcmps import sweeps, tables
     from parsim.machine.jit import FAST, njit
-    from parsim.particles.tables import Flow, Lists, Traceless, Vectors
+    from parsim.particles.tables import Kinematics, Lists, Traceless, Vectors
 
     axis = np.arange(_EDGE, dtype=float)
     x, y, z = (a.ravel() for a in np.meshgrid(axis, axis, axis, indexing="ij"))
@@ -53,7 +53,7 @@ def _seconds():
     fields = np.random.default_rng(1).uniform(1.0, 2.0, (8, x.size))
     growth = tables.Growth(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 3.0)
     rate, *out = np.zeros((12, x.size))
-    arguments = (at, Lists(start, end, end, index), Flow(Vectors(x, y, z), Vectors(*fields[:3])),
+    arguments = (at, Lists(start, end, end, index), Kinematics(Vectors(x, y, z), Vectors(*fields[:3])),
                  tables.Density(*fields[3:5], np.full(x.size, -1, np.int32)), Vectors(*fields[5:]),
                  weights.WEIGHTS["wendland_c4"].of_radius(3.1), growth,
                  tables.Change(rate, Vectors(*out[:3]), Vectors(*out[3:6]), Traceless(*out[6:])))

@@ -66,7 +66,7 @@ class Recorder:
         self.measure = Measure(self.case, simulation)
         self.next_frame, self.next_row = simulation.time, simulation.time
         self.particles = {"fluid": simulation.fluid_count, "active": simulation.active,
-                          "wall": len(simulation.models.walls), "body": len(simulation.models.samples)}
+                          "wall": len(simulation.solids.walls), "body": len(simulation.solids.samples)}
         if self.resumed:
             self.particles = self.resumed["particles"]
             self.next_frame, self.next_row = self.resumed["next_frame"], self.resumed["next_row"]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from parsim.fluid.scheme import Flow
 from parsim.machine.timers import Timers
 from parsim.output.checkpoint import Snapshot
 from parsim.run import guards
@@ -25,8 +26,9 @@ class Simulation:
         self.case, self.comm, self.timers = case, comm, Timers()
         models = self.models = Models(case, comm, self.timers)
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
-        self.bodies, self.contacts, self.gate = models.bodies, models.contacts, models.gate
-        self.time, self.step_count, self.dt, self.rebuilds = case.start, 0, 0.0, 0
+        self.solids = solids = models.solids
+        self.bodies, self.contacts, self.gate = solids.bodies, solids.contacts, solids.gate
+        self.time, self.step_count, self.dt, self.speed, self.rebuilds = case.start, 0, 0.0, 0.0, 0
         self._uneven, self.gone = [0.0, 1.0, 0], []  # sum, most and number of looks
         self._weight = math.hypot(*case.gravity)
         self._damping = case.speed / case.depth if case.depth else 0.0
@@ -86,9 +88,7 @@ class Simulation:
             self._balance(self.rebuilds % self.case.run.balance_every == 0)
             self._rebuild(self.fluid)
         keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
-        force = self._half_step(dt)
-        self._move(force, dt, keep)
-        self.scheme.finish(self.domain, self.near, dt, self.speed)
+        self.scheme.step(self._flow(keep), self.solids, self.time, dt)
         if self.time < 0.0 <= self.time + dt:
             flow(self.case, self.domain.particles)
         self.time += dt
@@ -97,48 +97,8 @@ class Simulation:
         with self.domain.refreshing(*self.scheme.STATE):
             self._look()
 
-    def _half_step(self, dt):
-        """Predict to the half step; accelerations of the water there; the load on the bodies, (bodies, 6)."""
-        p, near, time = self.domain.particles, self.near, self.time + 0.5 * dt
-        with self.timers("predict"):
-            self._place(*self.bodies.drifted(0.5 * dt), time)
-            self.scheme.predict(p, dt)
-        self.scheme.press(p, near)
-        load = None
-        if len(self.bodies.mass):
-            with self.timers("bodies"):
-                load = self._load(dt)
-        self.scheme.accelerate(self.domain, near, dt)
-        return load
-
-    def _load(self, dt):
-        """Load of the water on the bodies for the accelerations that it gives them, which the samples then have."""
-        pose, films, samples = self.bodies.drifted(0.5 * dt), self.models.films, self.models.samples
-        force, lever, response = self.scheme.react(self.domain, self.near, dt)
-        plate = self.gate.outline(self.time + 0.5 * dt) if self.gate else np.zeros(4)
-        added = films.loads(self.domain, self.near, plate, *pose)
-        load, rims, inertia = samples.loads(self.domain, self.near, force, response, pose[0], *added)
-        films.keep(*rims)
-        return samples.answer(self.domain.particles, self.near, *pose, load, inertia, lever, self.time)
-
-    def _move(self, load, dt, keep):
-        with self.timers("move"):
-            self.scheme.kick(self.domain.particles, self.near, dt, keep)
-            if load is not None:
-                self.models.samples.keep_out(self.domain.particles, self.near, *self.bodies.drifted(0.5 * dt))
-        with self.timers("contacts"):
-            if load is not None:
-                self.contacts.step(self.bodies, load, self.time, dt)
-                self.bodies.velocity *= keep
-                self.bodies.spin *= keep
-        with self.timers("bodies"):
-            self._place(self.bodies.position, self.bodies.quaternion, self.time + dt)
-
-    def _place(self, position, quaternion, time):
-        if self.gate:
-            self.models.gate_samples.place(self.domain.particles, time)
-        if len(self.bodies.mass):
-            self.models.samples.place(self.domain.particles, position, quaternion)
+    def _flow(self, keep=1.0):
+        return Flow(self.domain.particles, self.near, self.domain, self.speed, keep)
 
     def _outrun(self, dt):
         """Whether the lists would miss pairs within this step; the same on every rank."""
@@ -163,9 +123,7 @@ class Simulation:
             if self.gate:
                 near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
                 self._closed = self.gate.closed(self.time)
-            if len(self.bodies.mass):
-                self.models.samples.find(domain, near)
-                self.models.films.find(domain)
+            self.solids.find(self._flow())
         with self.timers("sums"):
             numbers = near.fluid.size + near.boundary.size, near.fluid.size, len(domain.gone)
             self.active, self.fluid_count, gone = domain.count(*numbers)

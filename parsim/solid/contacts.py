@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from parsim.boundary.gate import Gate
-from parsim.boundary.wall import ends_of_walls, walled_sides
+from parsim.geometry.faces import period, planes_of_walls
 from parsim.solid import table
 from parsim.solid.laws.foundation import pair_tables
 from parsim.solid.motion import begin, finish
@@ -42,7 +42,7 @@ class Contacts:
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
         self._steps_per_contact = case.contacts.steps_per_contact
         self._gate = gate or (Gate(case) if case.gate is not None else None)
-        self._walls, self._period = _walls(case), _period(case)
+        self._walls, self._period = planes_of_walls(case), period(case)
         self._law = pair_tables(list(case.materials.values()), _depth(case, bodies))
         self._first, self._elements, cell = elements_of(bodies)
         self._table = _table(bodies, cell, case, self._gate)
@@ -155,23 +155,6 @@ def _depth(case, bodies):
     """Depth of the elastic layer, m: `foundation_depth`, else half the thinnest body."""
     used = [0, 2] if bodies.planar else [0, 1, 2]
     return case.contacts.foundation_depth or (float(bodies.half[:, used].min()) if len(bodies) else 1.0)
-
-
-def _walls(case):
-    """Planes of the faces of the box that are walls, (n, 10): normal inwards, level, lowest and highest corner, m."""
-    planes = list(walled_sides(case))
-    walls = np.zeros((len(planes), 10))
-    walls[:, 4:] = np.concatenate(ends_of_walls(case))
-    for row, (axis, side, level) in enumerate(planes):
-        walls[row, axis], walls[row, 3] = -side, -side * level
-    return walls
-
-
-def _period(case):
-    """Lengths (3,), m, after which the box repeats; inf where it does not."""
-    faces, low, high = case.box.faces, case.box.min, case.box.max
-    around = [getattr(faces, f"{axis}_min") == "periodic" and (axis != "y" or case.dimensions == 3) for axis in "xyz"]
-    return np.array([high[a] - low[a] if around[a] else math.inf for a in range(3)])
 
 
 def _table(bodies, cell, case, gate):

@@ -1,8 +1,8 @@
 """Weakly compressible MPS (Mellado 2021, ch. 5; Jandaghian & Shakibaeinia 2020), explicit, symplectic in time.
 
-One momentum and one continuity sweep a step. `predict` goes to the half step; there `press` finds the pressures of the
-boundary, `react` the load on the bodies, which get their accelerations, and `accelerate` those of the water; `kick` and
-`finish` go from there to the full step, once the bodies have moved. Particles that see no halo are swept while the
+One momentum and one continuity sweep a step. `_predict` goes to the half step; there `_press` finds the pressures of
+the boundary, `_react` the load on the bodies, which get their accelerations, and `_accelerate` those of the water; kick
+and `_finish` go from there to the full step, once the bodies have moved. Particles that see no halo are swept while the
 messages to the neighbouring slabs travel.
 """
 
@@ -72,18 +72,33 @@ class WCMPS:
         """Number density (n,) at pressures (n,), Pa >= 0: the inverse state."""
         return self.lattice.number * updates.seventh_roots(pressure / self.stiffness)
 
-    def predict(self, p, dt):
+    def step(self, flow, solids, time, dt):
+        """One step: see the module. `STATE` is left to be refreshed."""
+        p, near, domain = flow.particles, flow.near, flow.domain
+        with self.timers("predict"):
+            solids.place(flow, time, 0.5 * dt)
+            self._predict(p, dt)
+        self._press(p, near)
+        with self.timers("bodies"):
+            solids.push(flow, self._react(p, near, dt), time, dt)
+        self._accelerate(domain, near, dt)
+        with self.timers("move"):
+            updates.kick(near.fluid, self.gravity, flow.keep, dt, p.acceleration, p.velocity)
+        solids.advance(flow, time, dt)
+        self._finish(domain, near, dt, flow.speed)
+
+    def _predict(self, p, dt):
         """Fluid to the half step, halo included: r, n, then the pressure."""
         state = 0.5 * dt, self.lattice.number, self.stiffness
         updates.predict(p.kind, p.surface, p.velocity, p.rate, state, p.place, p.n, p.p)
 
-    def press(self, p, near):
+    def _press(self, p, near):
         """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
             sweeps.boundary_pressure(near.boundary, near.lists, p.body, p.place, p.acceleration,
                                      self.lattice.weight, (*self.gravity, self.density), p.p)
 
-    def accelerate(self, domain, near, dt):
+    def _accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
         p, lattice = domain.particles, self.lattice
         with domain.refreshing("p"):
@@ -96,29 +111,26 @@ class WCMPS:
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.normal, p.vectors(VISCOUS))
         with self.timers("momentum"):
-            sweeps.momentum(at, near.lists, p.flow, _pressures(p), self.lattice.weight, forces, p.acceleration, around)
+            sweeps.momentum(at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration,
+                            around)
 
-    def react(self, domain, near, dt):
+    def _react(self, p, near, dt):
         """Forces of the water on the body samples `near.body`, N: (samples, 3), and how they depend on accelerations.
 
         Also `lever` (samples, 3), Pa s2/m, and `response` (samples, 6), kg: see `sweeps.reaction`.
         """
-        p, count = domain.particles, near.body.size
-        forces = self._forces(dt)
+        forces, count = self._forces(dt), near.body.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
-        sweeps.reaction(near.body, near.lists, p.flow, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
+        sweeps.reaction(near.body, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces,
+                        out)
         return self.mass * out.force, out.lever, self.mass * out.response
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
         return [math.sqrt(e) for e in updates.extremes(near.fluid, p.velocity, p.place, start)]
 
-    def kick(self, p, near, dt, keep):
-        """Velocities to the full step; `keep` is the share of velocity kept (1 but when settling)."""
-        updates.kick(near.fluid, self.gravity, keep, dt, p.acceleration, p.velocity)
-
-    def finish(self, domain, near, dt, speed):
-        """Positions to the full step, continuity there, damping, shifting; `STATE` is left to be refreshed."""
+    def _finish(self, domain, near, dt, speed):
+        """Positions to the full step, continuity there, damping, shifting."""
         p, own = domain.particles, domain.own
         with domain.refreshing(*VELOCITY, *VISCOUS, *NORMAL, "surface"):
             self._drift(p, own, dt)
@@ -147,7 +159,7 @@ class WCMPS:
                                _CROWD / lattice.spacing, _CLOSE * lattice.spacing, float(lattice.dimensions))
         out = tables.Change(p.rate, _shifts(p), p.vectors(TWICE_VISCOUS), p.isotropy)
         with self.timers("continuity"):
-            sweeps.continuity(at, near.lists, p.flow, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
+            sweeps.continuity(at, near.lists, p.kinematics, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
                               lattice.weight, growth, out)
 
     def _shift(self, domain, near, dt, speed):

@@ -46,7 +46,7 @@ def boundary_pressure(at, lists, body, place, acceleration, weight, fall, p):
 
 
 @rows
-def momentum(at, lists, flow, pressures, weight, forces, acceleration, around):
+def momentum(at, lists, kinematics, pressures, weight, forces, acceleration, around):
     """Pair accelerations, concentration, inward normal and viscous sums of fluid particles.
 
     Pressure gradient of Mellado 2021, eq. 5.15, with constant volumes, push = d / (n0 rho0), and (1 + t) p of each
@@ -58,8 +58,8 @@ def momentum(at, lists, flow, pressures, weight, forces, acceleration, around):
     own, whole: see `Lattice`. On entry `acceleration` holds that of the boundary.
     """
     start, middle, end, index = lists
-    x, y, z = flow.place
-    u, v, w = flow.velocity
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
     ax, ay, az = acceleration.x, acceleration.y, acceleration.z
     p, scale, isotropy = pressures
     txx, txy, txz, tyz, tzz = isotropy
@@ -124,7 +124,7 @@ def momentum(at, lists, flow, pressures, weight, forces, acceleration, around):
 
 
 @rows
-def reaction(at, lists, flow, acceleration, pressures, weight, forces, out):
+def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out):
     """Pair accelerations that body samples give back to the water they see, times -1: rows of out.force.
 
     They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `force` by
@@ -132,8 +132,8 @@ def reaction(at, lists, flow, acceleration, pressures, weight, forces, out):
     Which pairs collide is told by the velocities at the start of the step.
     """
     start, middle, index = lists.start, lists.middle, lists.index
-    x, y, z = flow.place
-    u, v, w = flow.velocity
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
     ax, ay, az = acceleration
     p, scale, isotropy = pressures
     txx, txy, txz, tyz, tzz = isotropy
@@ -200,7 +200,7 @@ def isotropic(xx, xy, xz, yy, yz, zz, dimensions, share):
 
 
 @rows
-def continuity(at, lists, flow, density, viscous, weight, growth, out):
+def continuity(at, lists, kinematics, density, viscous, weight, growth, out):
     """Relative rate of n (Mellado 2021, eq. 5.16) with diffusion; the sums of shifting and of noise damping.
 
     The sums of e e W are for the pressure force, see `isotropic`. The divergence is not made isotropic too: n would no
@@ -214,8 +214,8 @@ def continuity(at, lists, flow, density, viscous, weight, growth, out):
     particle to particle and leaves what changes over many.
     """
     start, middle, end, index = lists
-    x, y, z = flow.place
-    u, v, w = flow.velocity
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
     n, scale, body = density
     bx, by, bz = viscous
     n0, widening, spread, hx, hy, hz, crowd, close, dimensions = growth

@@ -1,0 +1,73 @@
+"""All that is solid, as a scheme of the water sees it: placed, pushed, advanced."""
+
+import numpy as np
+
+from parsim.boundary.gate import Gate, GateSamples
+from parsim.boundary.wall import Walls
+from parsim.coupling.films import Films
+from parsim.coupling.samples import BodySamples
+from parsim.solid.bodies import from_case
+from parsim.solid.contacts import Contacts
+
+
+class Solids:
+    """Walls, gate and bodies of a case with the samples that they show to the water, as attributes.
+
+    bodies, contacts; gate, or None; samples, of the bodies; films; walls. `sources`: all that has samples.
+    """
+
+    def __init__(self, case, layers, lattice, timers):
+        self.timers = timers
+        self.bodies = from_case(case)
+        self.contacts = Contacts(self.bodies, case)
+        self.samples = BodySamples(case, self.bodies, layers)
+        self.films = Films(case, self.bodies, self.samples, lattice)
+        self.walls = Walls(case, layers)
+        self.gate = Gate(case) if case.gate is not None else None
+        self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
+        self._load = None  # of the water in this step, (bodies, 6)
+
+    @property
+    def sources(self):
+        """What gives the domain samples at a rebuild."""
+        return [source for source in (self.samples, self._gate_samples, self.walls) if source is not None]
+
+    def find(self, flow):
+        """Note, after a rebuild, which of this rank's particles are near bodies."""
+        if len(self.bodies):
+            self.samples.find(flow.domain, flow.near)
+            self.films.find(flow.domain)
+
+    def place(self, flow, time, ahead):
+        """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""
+        self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
+
+    def push(self, flow, reaction, time, dt):
+        """Give the bodies, and their samples, the accelerations that the water's load gives them; see `Scheme`."""
+        if not len(self.bodies):
+            return
+        domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
+        force, lever, response = reaction
+        plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)
+        added = self.films.loads(domain, near, plate, *pose)
+        load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
+        self.films.keep(*rims)
+        self._load = self.samples.answer(flow.particles, near, *pose, load, inertia, lever, time)
+
+    def advance(self, flow, time, dt):
+        """Move the bodies over `dt`, s, under what has pushed them, and place the samples there."""
+        if len(self.bodies):
+            with self.timers("move"):
+                self.samples.keep_out(flow.particles, flow.near, *self.bodies.drifted(0.5 * dt))
+            with self.timers("contacts"):
+                self.contacts.step(self.bodies, self._load, time, dt)
+                self.bodies.velocity *= flow.keep
+                self.bodies.spin *= flow.keep
+        with self.timers("bodies"):
+            self._place(flow.particles, self.bodies.position, self.bodies.quaternion, time + dt)
+
+    def _place(self, p, position, quaternion, time):
+        if self.gate:
+            self._gate_samples.place(p, time)
+        if len(self.bodies):
+            self.samples.place(p, position, quaternion)

@@ -1,0 +1,42 @@
+"""What every scheme of the water is, and all that it may touch."""
+
+from typing import NamedTuple, Protocol
+
+
+class Flow(NamedTuple):
+    """The water: `Particles`, `Neighbours`, `Domain` (refreshing, sum, count, max); no rank, no case, no body.
+
+    speed, m/s: the largest of anything; keep: the share of velocity kept in this step, less than 1 while it settles.
+    """
+
+    particles: object
+    near: object
+    domain: object
+    speed: float = 0.0
+    keep: float = 1.0
+
+
+class Solids(Protocol):
+    """What a step may ask of walls, gate and bodies (`parsim.coupling.solids`)."""
+
+    def place(self, flow, time, ahead):
+        """Bring the samples of all that is solid to where it is at time + ahead, s."""
+
+    def push(self, flow, reaction, time, dt):
+        """Let the water push the bodies: `reaction` is its force on the samples `near.body` and what that depends on.
+
+        The accelerations that follow, and the pressures with them, are then those of the samples.
+        """
+
+    def advance(self, flow, time, dt):
+        """Move the bodies over dt, s, under what has pushed them, gravity and contacts, and place the samples there."""
+
+
+class Scheme(Protocol):
+    """One way to move the water. `step` is one screen and reads like the method."""
+
+    def time_step(self, speed, acceleration):
+        """Stable time step, s, at the largest speed, m/s, and acceleration, m/s2."""
+
+    def step(self, flow, solids, time, dt):
+        """Advance the water by dt, s, and with `solids` all that is in it."""
