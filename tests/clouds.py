@@ -78,3 +78,15 @@ def lattice(counts, spacing, jitter=0.0, seed=0):
     every = Particles(count, id=make_id(FLUID, np.arange(count)), kind=FLUID,
                       x=place[:, 0], y=place[:, 1], z=place[:, 2])
     return every, size
+
+
+def outside_box(points, centre, turn, half, axes):
+    """Signed distance (n,) to a turned box, m, and the outward direction (n, 3)."""
+    local = (points - centre) @ turn
+    over = np.abs(local) - half
+    over[:, [a for a in range(3) if a not in axes]] = -np.inf
+    beyond = np.maximum(over, 0.0)
+    distance = np.sqrt((beyond**2).sum(axis=1)) + np.minimum(over.max(axis=1), 0.0)
+    direction = np.sign(local) * beyond
+    length = np.sqrt((direction**2).sum(axis=1))
+    return distance, (direction / np.where(length > 0, length, 1.0)[:, None]) @ turn.T

@@ -10,7 +10,7 @@ import sys
 from parsim.case import model as cases
 from parsim.case.load import load
 from parsim.domain.comm import Comm
-from parsim.observe.measure import Measure
+from parsim.observe import rows_now
 from parsim.run import warm
 from parsim.run.simulation import Simulation
 
@@ -24,7 +24,7 @@ def run(case):
     simulation = Simulation(case, Comm())
     for _ in range(STEPS):
         simulation.step()
-    Measure(case, simulation).rows(simulation)
+    rows_now(case, simulation)
     simulation = Simulation(case, Comm(), simulation.snapshot())
     simulation.time = -1e-9
     simulation.step()

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from parsim.observe import TABLES
 from parsim.output import frames
-from parsim.output.series import TABLES, Table
+from parsim.output.series import Table
 
 TANK, LEVEL, GATE, BLOCK = np.array([0.70, 0.15, 0.30]), 0.15, 0.15, np.array([0.0725, 0.0725, 0.0195])
 NAMES = ("A1", "A2", "B1", "B2")

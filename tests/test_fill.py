@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from clouds import outside_box
 from test_water import TANK, simulation
 
 from parsim.case.fill import profile_shares
@@ -10,7 +11,7 @@ from parsim.fluid.wcmps.scheme import WCMPS
 from parsim.geometry.rotation import matrices
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, make_id
-from parsim.run.fill import disordered, flow, outside_box, water
+from parsim.run.fill import disordered, flow, water
 from parsim.solid.bodies import from_case
 
 CHANNEL = TANK | {"box": {"max": [0.2, 1.0, 0.2], "faces": {"x_min": "periodic", "x_max": "periodic"}}}

@@ -6,6 +6,7 @@ from test_water import POOL, SQUARE, TANK, simulation
 
 from parsim.coupling.films import gap_to_box, gap_to_plane
 from parsim.errors import InputError
+from parsim.geometry.nearby import near_bodies
 
 WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
 SPREAD = 0.1  # of the lift of a fixed body six particles thick, also in the open; without films it is -4 on the bed
@@ -68,6 +69,19 @@ def test_patches_cover_the_body():
     films = simulation(POOL | {"bodies": [FIXED | {"position": [0.2, 0.5, 0.15]}]}).solids.films
     assert films._area.sum() == pytest.approx(4 * 0.06)
     assert films._rim.sum() == 8, "in 2D the rim of a face is its two ends"
+
+
+@pytest.mark.parametrize("period", [np.inf, 2.0])
+def test_bodies_that_are_near_each_other_are_found(period):
+    rng = np.random.default_rng(7)
+    place, span = rng.uniform(-1.0, 1.0, (60, 3)), rng.uniform(0.02, 0.3, 60)
+    first, others = near_bodies(place, span, period)
+    apart = place[:, None] - place[None, :]
+    if period < np.inf:
+        apart[:, :, 0] -= period * np.rint(apart[:, :, 0] / period)
+    close = ((apart**2).sum(2) < (span[:, None] + span) ** 2) & ~np.eye(60, dtype=bool)
+    for b in range(60):
+        assert sorted(others[first[b] : first[b + 1]]) == list(np.flatnonzero(close[b]))
 
 
 def test_gaps_are_measured_along_the_normal():

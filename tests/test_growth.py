@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from test_water import POOL, simulation
 
-from parsim.observe.measure import Measure
+from parsim.observe import rows_now
 
 LONG, EVERY = 100_000, 500
 
@@ -29,14 +29,14 @@ def test_many_steps_take_no_memory_and_make_no_energy():
     body = {"name": "block", "shape": {"size": [0.06, 1.0, 0.03]}, "density": 700.0, "material": "wood",
             "position": [0.1, 0.5, "float"]}
     s = simulation(POOL | {"water": {"fill": fill}, "bodies": [body], "run": {"until": 1e3}})
-    count, marks, energy, measure = s.near.fluid.size, [], [], Measure(s.case, s)
+    count, marks, energy = s.near.fluid.size, [], []
     for step in range(LONG):
         if step % EVERY == 0:
-            energy.append(measure.rows(s)["energy"][0][-1])
+            energy.append(rows_now(s.case, s)["energy"]["total"][0])
         if step % (LONG // 10) == LONG // 20:
             marks.append(resident())
         s.step()
-    rest = energy_at_rest(0.4, measure.mass / 1000.0, 0.06, 0.03, 0.7)
+    rest = energy_at_rest(0.4, count * s.scheme.mass / 1000.0, 0.06, 0.03, 0.7)
     gained = max(later - min(energy[: at + 1]) for at, later in enumerate(energy))
     drift = max(energy[len(energy) // 5 :]) - min(energy[len(energy) // 5 :])
     print(f"energy, J: at first {energy[0]:.3f}, after a fifth {energy[len(energy) // 5]:.4f}, at the end "

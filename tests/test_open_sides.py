@@ -11,8 +11,7 @@ import parsim
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
 from parsim.errors import RunError
-from parsim.observe.measure import Measure
-from parsim.output.series import TABLES
+from parsim.observe import rows_now
 from parsim.run.loop import run
 from parsim.run.simulation import Simulation
 
@@ -28,7 +27,7 @@ DRY = merged(LEAVING, {"water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.1, 
 
 def counts(s):
     """The row of the counts, by name."""
-    return dict(zip(list(TABLES["counts"])[2:], Measure(s.case, s).rows(s)["counts"][0], strict=True))
+    return {name: values[0] for name, values in rows_now(s.case, s)["counts"].items()}
 
 
 def test_a_body_that_leaves_is_taken_out_and_told_of(tmp_path, capsys):

@@ -7,7 +7,7 @@ import pytest
 
 import parsim
 from parsim.__main__ import main
-from parsim.output.series import TABLES
+from parsim.observe import TABLES
 
 # a gate, a body afloat, a gauge, and water that is thrown out over the top
 CASE = """

@@ -8,8 +8,7 @@ import pytest
 from flows import course, simulation, tank
 from test_validate import told
 
-from parsim.observe.measure import Measure
-from parsim.output.series import TABLES
+from parsim.observe import rows_now
 
 GRAVITY = 9.81
 SOLID = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}
@@ -30,7 +29,7 @@ def basin(length, height, spacing, bodies, fill=None, settle=0.0, friction=0.4, 
 
 def energy(s):
     """Row of the energy series as a dict, J."""
-    return dict(zip(list(TABLES["energy"])[2:], Measure(s.case, s).rows(s)["energy"][0], strict=True))
+    return {name: values[0] for name, values in rows_now(s.case, s)["energy"].items()}
 
 
 @pytest.mark.parametrize(("spacing", "density"), [(0.02, 900.0), (0.005, 600.0), (0.01, 200.0), (0.01, 900.0)])

@@ -4,14 +4,18 @@ import math
 
 import numpy as np
 import pytest
+from clouds import outside_box
 
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
-from parsim.observe.water import energies
+from parsim.geometry.nearby import near_points
+from parsim.geometry.rotation import from_angles, matrices
+from parsim.observe.energy import energies
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import GATE_DOWN, GATE_UP
 from parsim.particles.tables import Kinematics, Vectors
-from parsim.run.fill import outside_box, taken_by_bodies, water
+from parsim.run.beside import Boxes, away
+from parsim.run.fill import taken_by_bodies, water
 from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
 
@@ -96,7 +100,7 @@ def test_momentum_stays_in_a_periodic_box(shifting):
 def test_the_elastic_energy_is_the_work_of_the_pressure():
     n0, sound2, mass = 20.0, 900.0, 1.7
     s = np.array([0.97, 0.999, 1.0, 1.003, 1.02])
-    zero, out, gravity = np.zeros(5), np.zeros((5, 4)), (0.0, 0.0, -9.81)
+    zero, out, gravity = np.zeros(5), np.zeros((5, 3)), (0.0, 0.0, -9.81)
     flow = Kinematics(Vectors(zero, zero, zero + 2.0), Vectors(zero + 3.0, zero, zero))
     energies(np.arange(5), flow, n0 * s, (mass, n0, sound2), gravity, out)
     for row, end in zip(out, s, strict=True):
@@ -151,11 +155,34 @@ def test_the_samples_of_a_body_carry_its_volume():
     assert distance.max() < 0.5 * math.hypot(0.064, 0.057)
 
 
-def test_outside_box_is_the_distance_to_the_surface():
-    points = np.array([[2.0, 0, 0], [0.5, 0, 0], [2.0, 3.0, 0], [0, 0, -1.5]])
-    distance, direction = outside_box(points, np.zeros(3), np.eye(3), np.array([1.0, 2.0, 3.0]), (0, 1, 2))
-    assert distance == pytest.approx([1.0, -0.5, math.sqrt(2), -1.0])
-    assert direction[2] == pytest.approx([math.sqrt(0.5), math.sqrt(0.5), 0])
+def test_how_far_a_box_is_away():
+    box = Boxes(np.zeros((1, 3)), np.eye(3).reshape(1, 9), np.array([[1.0, 2.0, 3.0]]), np.ones(3, bool))
+    points = [(2.0, 0.0, 0.0), (0.5, 0.0, 0.0), (2.0, 3.0, 0.0), (0.0, 0.0, -1.5)]
+    assert [away(p, 0, box)[0] for p in points] == pytest.approx([1.0, -0.5, math.sqrt(2), -1.0])
+    assert away(points[2], 0, box)[1] == pytest.approx((math.sqrt(0.5), math.sqrt(0.5), 0.0))
+
+
+def test_how_far_turned_boxes_are_away_against_a_plain_version():
+    rng = np.random.default_rng(5)
+    turn = matrices(np.array([from_angles(rng.uniform(-90.0, 90.0, 3)) for _ in range(20)]))
+    box = Boxes(rng.uniform(-1.0, 1.0, (20, 3)), turn.reshape(-1, 9), rng.uniform(0.1, 0.5, (20, 3)), np.ones(3, bool))
+    points = rng.uniform(-1.5, 1.5, (50, 3))
+    for b in range(20):
+        distance, direction = outside_box(points, box.position[b], turn[b], box.half[b], (0, 1, 2))
+        found = [away(tuple(p), b, box) for p in points]
+        assert [d for d, _ in found] == pytest.approx(distance, abs=1e-12)
+        assert np.array([way for _, way in found]) == pytest.approx(direction, abs=1e-12)
+
+
+@pytest.mark.parametrize("axes", [(0, 2), (0, 1, 2)])
+def test_every_body_within_reach_of_a_point_is_found(axes):
+    rng = np.random.default_rng(6)
+    points, place, reach = rng.uniform(-1.0, 1.0, (300, 3)), rng.uniform(-1.0, 1.0, (40, 3)), rng.uniform(0.1, 0.4, 40)
+    order = np.argsort(points[:, 0], kind="stable")
+    first, near = near_points(points, order, place, reach, np.isin(range(3), axes))
+    apart = np.sqrt(((points[:, None] - place)[:, :, axes] ** 2).sum(2))
+    for k in range(300):
+        assert sorted(near[first[k] : first[k + 1]]) == list(np.flatnonzero(apart[k] < reach))
 
 
 @pytest.mark.parametrize("height", [0.15, 0.153, 0.1567])

@@ -150,7 +150,7 @@ class Material(Table):
 class Contacts(Table):
     """How bodies touch each other, the walls and the gate."""
 
-    law: Literal["hertz"] = Field("hertz", description="contact law")
+    law: Literal["foundation"] = Field("foundation", description="contact law: an elastic layer under every face")
     foundation_depth: Positive | None = Field(
         None, description="depth of the elastic layer under a face in contact, m; left out: the law's own choice"
     )

@@ -16,6 +16,7 @@ import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
 from parsim.geometry.faces import period, planes_of_walls
+from parsim.geometry.nearby import near_bodies
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY
@@ -116,14 +117,8 @@ class Films:
         row[p.sample[at]] = at
         self._row = row
         self._here = np.flatnonzero(self.samples.here[self.sample])
-        size = np.sqrt((self.bodies.half[:, self._axes] ** 2).sum(1))
-        span = size[:, None] + size[None, :] + (_FAR + 2.0) * self._spacing
-        apart = self.bodies.position[:, None] - self.bodies.position[None, :]
-        if self._period < math.inf:
-            apart[:, :, 0] -= self._period * np.rint(apart[:, :, 0] / self._period)
-        close = ((apart**2).sum(2) < span**2) & ~np.eye(len(size), dtype=bool)
-        self._others = np.ascontiguousarray(np.nonzero(close)[1])  # a column of pairs, or the kernel compiles anew
-        self._first = np.concatenate([[0], np.cumsum(close.sum(1))])
+        span = self.bodies.radius + 0.5 * (_FAR + 2.0) * self._spacing
+        self._first, self._others = near_bodies(self.bodies.position, span, self._period)
 
     def loads(self, domain, near, plate, position, quaternion):
         """What this rank's patches add to sums over all ranks: values (n, 6) and their rows (n,).

@@ -15,7 +15,6 @@ from parsim.output.reader import open as open_run
 
 INFO = ("steps", "time", "particles", "lost", "leaks")
 NOT_COMPARED = {"timings"}
-KEYS = {"bodies": ("body",), "loads": ("body", "kind"), "gauges": ("gauge",)}
 EQUAL, DIFFERENT = 0, 3
 
 
@@ -171,7 +170,7 @@ def _compare_tables(ledger, name, a, b):
         return int(a["step"][row])
 
     def item(row):
-        keys = [str(a[key][row]) for key in KEYS.get(name, ()) if key in a]
+        keys = [str(values[row]) for values in a.values() if values.dtype.kind in "OUS"]  # what a row is about
         return " ".join([f"row {row}", *keys])
 
     for column in a if min(rows) else ():

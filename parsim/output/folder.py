@@ -11,7 +11,6 @@ from parsim.output import checkpoint, lock
 from parsim.output.frames import write_text
 from parsim.output.reader import MARK, is_output
 from parsim.output.reader import open as open_run
-from parsim.output.series import TABLES
 
 # what a run and its report write, in the order in which it is removed: what a killed job leaves of it must not be taken
 # for another run's
@@ -109,6 +108,8 @@ class Folder:
         yield from [path for path in checkpoint.listed(self.path) if checkpoint.step_of(path) > account["step_count"]]
 
     def _warn_of_missing(self, account):
+        from parsim.observe import TABLES  # brings numba along, whose settings a run makes first
+
         names = [name for entries in account["frames"].values() for name, _ in entries]
         missing = [name for name in names if not (self.path / name).is_file()]
         missing += [f"series/{name}.csv" for name in TABLES if not (self.path / "series" / f"{name}.csv").is_file()]

@@ -10,33 +10,6 @@ from pathlib import Path
 from parsim.errors import WriteError
 from parsim.output.frames import write_text
 
-_CLOCK = {"step": "-", "time": "s"}
-# the columns of every series, in their order, with their units
-TABLES = {
-    name: _CLOCK | columns
-    for name, columns in {
-        "energy": {
-            "dt": "s", "kinetic_water": "J", "potential_water": "J", "elastic_water": "J", "kinetic_bodies": "J",
-            "potential_bodies": "J", "elastic_contacts": "J", "work_gate": "J", "dissipated_contacts": "J",
-            "total": "J",
-        },
-        "counts": {
-            "fluid": "-", "active": "-", "all": "-", "in_walls": "-", "in_bodies": "-", "in_gate": "-", "lost": "-",
-            "surface": "-", "volume": "m3", "bodies_left": "-",
-        },
-        "bodies": {
-            "body": "-", "x": "m", "y": "m", "z": "m", "q0": "-", "q1": "-", "q2": "-", "q3": "-",
-            "u": "m/s", "v": "m/s", "w": "m/s", "spin_x": "rad/s", "spin_y": "rad/s", "spin_z": "rad/s",
-        },
-        "loads": {
-            "body": "-", "kind": "-", "fx": "N", "fy": "N", "fz": "N", "tx": "N m", "ty": "N m", "tz": "N m",
-        },
-        "gauges": {"gauge": "-", "x": "m", "y": "m", "level": "m"},
-        "front": {"x": "m"},
-        "lost": {"what": "-", "id": "-", "x": "m", "y": "m", "z": "m", "u": "m/s", "v": "m/s", "w": "m/s"},
-    }.items()
-}  # fmt: skip
-
 
 class Table:
     """A CSV file that grows row by row; rows wait in memory until :meth:`flush`.

@@ -8,50 +8,11 @@ the bodies first, whole rows thinned evenly. Only what lies beside bodies is loo
 import numpy as np
 
 from parsim.case.fill import level_over, profile_shares
-from parsim.geometry.faces import walled_sides
-from parsim.geometry.rotation import matrices
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, Particles, make_id
+from parsim.run.beside import Beside
 
 _FINE = 4  # measuring points per spacing and axis
-_OPPOSITE = -0.9  # cosine below which two outward directions face each other across a gap
-
-
-def outside_box(points, centre, turn, half, axes):
-    """Signed distance (n,) to a turned box, m, and the outward direction (n, 3)."""
-    local = (points - centre) @ turn
-    over = np.abs(local) - half
-    over[:, [a for a in range(3) if a not in axes]] = -np.inf
-    beyond = np.maximum(over, 0.0)
-    distance = np.sqrt((beyond**2).sum(axis=1)) + np.minimum(over.max(axis=1), 0.0)
-    direction = np.sign(local) * beyond
-    length = np.sqrt((direction**2).sum(axis=1))
-    return distance, (direction / np.where(length > 0, length, 1.0)[:, None]) @ turn.T
-
-
-def plane_distances(points, case):
-    """Distance (n,) and direction into the water (3,) of each wall and gate face that stands beside the points."""
-    for axis, sign, level in walled_sides(case):
-        yield sign * (level - points[:, axis]), -sign * np.eye(3)[axis]
-    if case.gate is not None:
-        for place, sign in ((case.gate.min_x, -1.0), (case.gate.max_x, 1.0)):
-            distance = sign * (points[:, 0] - place)
-            yield np.where(distance >= 0, distance, np.inf), sign * np.eye(3)[0]
-
-
-def solids(points, case, bodies):
-    """Distance to the nearest body (n,) and whether a point is in a body or in a gap narrower than the spacing."""
-    found = [outside_box(points, centre, turn, half, case.axes)
-             for centre, turn, half in zip(bodies.position, matrices(bodies.quaternion), bodies.half, strict=True)]
-    nearest = np.min([distance for distance, _ in found], axis=0)
-    taken = nearest <= 0.0
-    others = found + [(d, np.broadcast_to(v, points.shape)) for d, v in plane_distances(points, case)]
-    for k, (distance, direction) in enumerate(found):
-        close = np.flatnonzero(~taken & (distance < case.spacing))
-        for other, facing in others[k + 1 :]:
-            cosine = (direction[close] * facing[close]).sum(axis=1)
-            taken[close] |= (distance[close] + other[close] < case.spacing) & (cosine < _OPPOSITE)
-    return nearest, taken
 
 
 def scatter(index):
@@ -88,13 +49,13 @@ def taken_by_bodies(lattices, case, bodies):
     number, place, spacing = (np.concatenate(parts) for parts in (number, place, spacing))
     if not number.size:
         return number
-    nearest, taken = solids(place, case, bodies)
+    nearest, taken = Beside(place, case, bodies).look(place)
     near = np.flatnonzero(nearest < case.spacing)
-    share = np.zeros(near.size)
+    share, beside = np.zeros(near.size), Beside(place[near], case, bodies)
     fine = (np.arange(_FINE) + 0.5) / _FINE - 0.5
     steps = [fine if a in case.axes else np.zeros(1) for a in range(3)]
     for offset in np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3):
-        share += solids(place[near] + offset * spacing[near], case, bodies)[1]
+        share += beside.look(place[near] + offset * spacing[near])[1]
     share /= _FINE ** len(case.axes)
     depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near] / case.spacing
     # water left under one flat face comes out of it by itself, at an edge or in a gap it is flung out: that goes first
@@ -112,7 +73,8 @@ def kept_out(points, number, place, case, bodies):
     near = np.flatnonzero(np.isin(number, beside_bodies(points, case, bodies)))
     even = points.points(number)
     if near.size:
-        before, after = (solids(at[near], case, bodies)[0] for at in (even, place))
+        beside = Beside(even[near], case, bodies)
+        before, after = (beside.look(at[near])[0] for at in (even, place))
         back = near[after < np.minimum(before, half)]
         place[back] = even[back]
     if case.gate is not None:

@@ -14,10 +14,11 @@ import numpy as np
 from parsim import __version__
 from parsim.errors import WriteError
 from parsim.machine import variant
-from parsim.observe.measure import Measure
+from parsim.observe import OBSERVERS, TABLES
+from parsim.observe.lost import Lost
 from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
 from parsim.output.reader import MARK
-from parsim.output.series import TABLES, Table, next_multiple
+from parsim.output.series import Table, next_multiple
 from parsim.run.progress import Progress
 
 _FIELDS = {"id": ("i8", ()), "velocity": ("f8", (3,)), "pressure": ("f8", ()), "class": ("u1", ()),
@@ -63,7 +64,7 @@ class Recorder:
 
     def begin(self, simulation):
         """Open the tables; write the first rows and frame, unless the run goes on."""
-        self.measure = Measure(self.case, simulation)
+        self.observers = [observer(self.case) for observer in OBSERVERS]
         self.next_frame, self.next_row = simulation.time, simulation.time
         self.particles = {"fluid": simulation.fluid_count, "active": simulation.active,
                           "wall": len(simulation.solids.walls), "body": len(simulation.solids.samples)}
@@ -115,7 +116,7 @@ class Recorder:
                 self._frame(simulation)
 
     def _rows(self, simulation):
-        rows = self.measure.rows(simulation)
+        rows = self._seen(simulation)
         if not self.main:
             return
         self._tell_gone(simulation)
@@ -124,12 +125,17 @@ class Recorder:
                 self.tables[name].row(simulation.step_count, simulation.time, *line)
             self.tables[name].flush()
 
+    def _seen(self, simulation):
+        """Rows of every series but that of what is lost: {name: rows}."""
+        return {observer.name: observer.rows(simulation) for observer in self.observers if observer.name != Lost.name}
+
     def _tell_gone(self, simulation):
-        for step, time, what, ident, *rest in simulation.gone:
-            self.tables["lost"].row(int(step), float(time), what, int(ident), *map(float, rest))
+        for row in Lost(self.case).rows(simulation):
+            self.tables[Lost.name].row(*row)
+            _, time, what, *_ = row
             if what != "water":
                 self.progress.say(f"{what} has left the box: taken out at t = {time:.6g} s")
-        self.tables["lost"].flush()
+        self.tables[Lost.name].flush()
         simulation.gone.clear()
 
     def fault(self, simulation):
@@ -183,7 +189,7 @@ class Recorder:
 
     def _close(self, words, simulation, **facts):
         wall = clock.perf_counter() - simulation.timers.start
-        rows = self.measure.rows(simulation)
+        rows = self._seen(simulation)
         if not self.main:
             return
         self._tell_gone(simulation)

@@ -130,7 +130,7 @@ def exercise():
     from parsim.case.model import parse
     from parsim.domain.comm import Comm
     from parsim.fluid.weights import WEIGHTS
-    from parsim.observe.measure import Measure
+    from parsim.observe import rows_now
     from parsim.run.simulation import Simulation
 
     weights = [_CASE | {"water": _CASE["water"] | {"weight": name}} for name in WEIGHTS]
@@ -139,7 +139,7 @@ def exercise():
         simulation = Simulation(case, Comm())
         for _ in range(3):
             simulation.step()
-        Measure(case, simulation).rows(simulation)
+        rows_now(case, simulation)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The contact law "hertz" for flat faces: an elastic foundation under each contact element, dashpots, dry friction.
+"""The contact law "foundation" for flat faces: an elastic layer under each contact element, dashpots, dry friction.
 
 An element of area A at depth d below the face it touches feels k A d along the normal, k = E* / depth with
 1/E* = (1 - nu_k^2)/E_k + (1 - nu_l^2)/E_l (Hertz; Mellado 2021, eq. 4.20) and the depth of the elastic layer. Linear,

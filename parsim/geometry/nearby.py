@@ -1,0 +1,72 @@
+"""What is near what, by a sweep along x: nothing here grows with the square of a number."""
+
+import numpy as np
+
+from parsim.machine.jit import kernel
+
+
+@kernel
+def near_points(points, order, place, reach, used):
+    """Balls at `place` (b, 3) of radius `reach` (b,), m, that points (n, 3) are in: near[first[k]:first[k + 1]] of k.
+
+    `order` sorts the points by x; `used` (3,): the axes that count.
+    """
+    x, count = points[order, 0], np.zeros(len(points) + 1, np.int64)
+    near = np.empty(0, np.int64)
+    for again in range(2):
+        for b in range(len(place)):
+            begin = np.searchsorted(x, place[b, 0] - reach[b])
+            for t in range(begin, x.size):
+                if x[t] > place[b, 0] + reach[b]:
+                    break
+                k, square = order[t], 0.0
+                for a in range(3):
+                    square += (points[k, a] - place[b, a]) ** 2 if used[a] else 0.0
+                if square < reach[b] * reach[b]:
+                    if again:
+                        near[count[k]] = b
+                    count[k if again else k + 1] += 1
+        if not again:
+            count = np.cumsum(count)
+            near = np.empty(count[-1], np.int64)
+    first = np.empty(len(points) + 1, np.int64)
+    first[0], first[1:] = 0, count[:-1]
+    return first, near
+
+
+@kernel
+def near_bodies(position, span, period):
+    """Bodies whose balls of radius `span` (b,), m, meet: others[first[b]:first[b + 1]] of b; period along x, m."""
+    count = len(position)
+    along = position[:, 0].copy()
+    if period < np.inf:
+        along -= period * np.floor(along / period)
+    order, widest = np.argsort(along, kind="mergesort"), 0.0
+    for b in range(count):
+        widest = max(widest, span[b])
+    first, others = np.zeros(count + 1, np.int64), np.empty(0, np.int64)
+    for again in range(2):
+        fill = first[:-1].copy()
+        for row in range(count):
+            b = order[row]
+            for step in range(1, count):
+                other = (row + step) % count
+                around = period if row + step >= count else 0.0
+                if around == np.inf:
+                    break
+                c = order[other]
+                dx = along[c] + around - along[b]
+                if dx > span[b] + widest or dx > 0.5 * period:
+                    break
+                dy, dz = position[c, 1] - position[b, 1], position[c, 2] - position[b, 2]
+                if dx * dx + dy * dy + dz * dz < (span[b] + span[c]) ** 2:
+                    for one, two in ((b, c), (c, b)):
+                        if again:
+                            others[fill[one]] = two
+                            fill[one] += 1
+                        else:
+                            first[one + 1] += 1
+        if not again:
+            first = np.cumsum(first)
+            others = np.empty(first[-1], np.int64)
+    return first, others

@@ -1,0 +1,71 @@
+"""How many particles there are, and how many are where none may be."""
+
+import numpy as np
+
+from parsim.geometry.faces import planes_of_walls
+from parsim.geometry.inside import nearest_face
+from parsim.geometry.rotation import matrices
+from parsim.machine.jit import kernel
+from parsim.observe.observer import columns
+from parsim.particles.state import SURFACE
+
+
+class Counts:
+    """One row: numbers of particles, and the volume of the water by its density."""
+
+    name = "counts"
+    columns = columns(fluid="-", active="-", all="-", in_walls="-", in_bodies="-", in_gate="-", lost="-", surface="-",
+                      volume="m3", bodies_left="-")
+
+    def __init__(self, case):
+        self._walls, self._axes, self._slack = planes_of_walls(case), np.array(case.axes), 0.25 * case.spacing
+
+    def rows(self, s):
+        """See `Observer`."""
+        p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
+        gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)
+        order = np.argsort(s.bodies.position[:, 0], kind="stable")
+        bodies = (s.bodies.position[order], matrices(s.bodies.quaternion[order]), s.bodies.half[order],
+                  s.bodies.radius.max(initial=0.0), self._axes)
+        misplaced(at, p.place, self._walls, bodies, gate, self._slack, count)
+        fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
+        every = fluid + len(s.solids.walls) + len(s.solids.samples)
+        lattice = s.scheme.lattice
+        volume, = s.domain.sum((1.0 / (p.n[at] / lattice.number))[:, None]) * lattice.volume  # of m / rho, not of N
+        return [[fluid, s.active, every, *rest, float(volume), int(s.bodies.gone.sum())]]
+
+
+@kernel
+def misplaced(at, place, walls, bodies, gate, slack, count):
+    """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
+
+    walls: see `geometry.faces.planes_of_walls`; bodies in the order of their x: centre (b, 3), turn (b, 3, 3), half
+    (b, 3), the largest radius, and axes; gate: its low and high x, and where it ends below, m.
+    """
+    x, y, z = place
+    centre, turn, half, radius, axes = bodies
+    along = centre[:, 0].copy()
+    low, high, barrier = gate
+    for i in at:
+        r, behind = (x[i], y[i], z[i]), False
+        for w in range(len(walls)):
+            within = True
+            for a in range(3):
+                within = within and walls[w, 4 + a] <= r[a] <= walls[w, 7 + a]
+            height = walls[w, 0] * r[0] + walls[w, 1] * r[1] + walls[w, 2] * r[2] - walls[w, 3]
+            behind = behind or (within and height < -slack)
+        count[0] += behind
+        b = np.searchsorted(along, r[0] - radius)
+        while b < along.size and along[b] <= r[0] + radius:
+            count[1] += nearest_face(r, b, centre, turn, half, axes)[0] > slack
+            b += 1
+        count[2] += low + slack < r[0] < high - slack and r[2] > barrier + slack
+
+
+@kernel
+def count_surface(at, surface):
+    """Number of surface and detached particles among `at`."""
+    total = 0
+    for i in at:
+        total += surface[i] >= SURFACE
+    return total

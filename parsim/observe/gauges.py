@@ -1,0 +1,45 @@
+"""Water levels at given places."""
+
+import numpy as np
+
+from parsim.case.bodies import GAUGE_REACH
+from parsim.machine.jit import kernel
+from parsim.observe.observer import columns
+from parsim.particles.state import DETACHED
+
+
+class Gauges:
+    """One row for each gauge: the highest connected water near it."""
+
+    name = "gauges"
+    columns = columns(gauge="-", x="m", y="m", level="m")
+
+    def __init__(self, case):
+        middle = 0.5 * (case.box.min[1] + case.box.max[1])
+        self._names = [gauge.name for gauge in case.output.gauges]
+        places = [[gauge.x, middle if gauge.y is None else gauge.y] for gauge in case.output.gauges]
+        self._places, self._spacing = np.array(places).reshape(-1, 2), case.spacing
+        self._flat = case.dimensions == 2
+
+    def rows(self, s):
+        """See `Observer`."""
+        if not self._names:
+            return []
+        p, top = s.domain.particles, np.full(len(self._names), -np.inf)
+        levels(s.near.fluid, p.surface, p.place, self._places, GAUGE_REACH * self._spacing, self._flat, top)
+        top = s.domain.max(*top)
+        level = np.where(np.isfinite(top), top + 0.5 * self._spacing, np.nan)
+        return [[name, float(x), float(y), float(z)]
+                for name, (x, y), z in zip(self._names, self._places, level, strict=True)]
+
+
+@kernel
+def levels(at, surface, place, gauges, reach, flat, out):
+    """Highest connected particle within `reach`, m, of each gauge (k, 2) into out (k,); `flat` ignores y."""
+    x, y, z = place
+    for k in range(gauges.shape[0]):
+        for i in at:
+            if surface[i] != DETACHED:
+                dx, dy = x[i] - gauges[k, 0], y[i] - gauges[k, 1]
+                if dx * dx + (0.0 if flat else dy * dy) < reach * reach:
+                    out[k] = max(out[k], z[i])

@@ -1,0 +1,21 @@
+"""What acts on the bodies, by kind."""
+
+from parsim.observe.observer import columns
+
+KINDS = ("water", "contact", "gravity")
+
+
+class Loads:
+    """One row for each body and kind of load: the mean of the last step."""
+
+    name = "loads"
+    columns = columns(body="-", kind="-", fx="N", fy="N", fz="N", tx="N m", ty="N m", tz="N m")
+
+    def __init__(self, case):
+        pass
+
+    def rows(self, s):
+        """See `Observer`."""
+        loads = {kind: s.bodies.shown(f"{kind}_load") for kind in KINDS}
+        return [[name, kind, *map(float, load[k])]
+                for k, name in enumerate(s.bodies.names) for kind, load in loads.items()]

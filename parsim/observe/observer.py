@@ -1,0 +1,35 @@
+"""What watches a run: an object with a name, columns and rows. One file each, listed in the folder's `__init__`."""
+
+from typing import ClassVar, NamedTuple, Protocol
+
+CLOCK = {"step": "-", "time": "s"}  # the columns that begin every row
+
+
+class Column(NamedTuple):
+    """One column of a series: its name and its unit."""
+
+    name: str
+    unit: str
+
+
+class Observer(Protocol):
+    """Looks at a simulation and changes nothing: no order among observers."""
+
+    name: ClassVar[str]
+    columns: ClassVar[tuple]
+
+    def __init__(self, case):
+        """For one case."""
+
+    def rows(self, simulation):
+        """Rows, lists of values in the order of the columns; called on all ranks together."""
+
+
+def columns(**units):
+    """Columns from their units by name."""
+    return tuple(Column(name, unit) for name, unit in units.items())
+
+
+def table(observer):
+    """Unit of every column of a series by name, those of the clock first."""
+    return CLOCK | {column.name: column.unit for column in observer.columns}
