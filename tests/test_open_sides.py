@@ -39,7 +39,7 @@ def test_a_body_that_leaves_is_taken_out_and_told_of(tmp_path, capsys):
     assert at.size == 1 and lost["x"][at] - 0.04 > 0.4 + 0.03 and lost["u"][at] > 2.0 and lost["id"][at] == 0
     assert (lost["what"] == "water").sum() == out.series("counts")["lost"][-1] > 0
     assert left[0] == 0 and left[-1] == 1 and (np.diff(left) >= 0).all()
-    gone = bodies["time"] >= lost["time"][at]
+    gone = bodies["step"] >= lost["step"][at]
     assert np.isnan(bodies["x"][gone]).all() and np.isfinite(bodies["x"][~gone]).all()
     assert np.isfinite(out.series("energy")["total"]).all()
     assert len(out.bodies(0)["quads"]) == 6 and len(out.bodies(-1)["quads"]) == 0

@@ -59,7 +59,7 @@ def speeds(case, until):
     pytest.param(False, 15, 0.2, range(100, 115), marks=pytest.mark.slow),
 ])  # fmt: skip
 def test_no_body_is_faster_than_weight_and_water_make_it(flat, most, until, seeds):
-    """Drag and neighbours only slow it down; 1.10 was the most in 27 draws, a body that blows up is ten times as fast."""
+    """Drag and neighbours only slow it down; 1.10 was the most in 27 draws, and what blows up is ten times as fast."""
     worst = {seed: speeds(lone_body(random.Random(seed), flat, most), until) for seed in seeds}
     assert max(worst.values()) < 1.2, worst
 

@@ -44,4 +44,5 @@ def repeats(case):
 
 def period(case):
     """Lengths (3,), m, after which the box repeats; inf where it does not."""
-    return np.array([size if again else math.inf for size, again in zip(case.box.size, repeats(case), strict=True)])
+    low, high = case.box.min, case.box.max
+    return np.array([high[a] - low[a] if again else math.inf for a, again in enumerate(repeats(case))])
