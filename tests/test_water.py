@@ -109,6 +109,22 @@ def test_the_elastic_energy_is_the_work_of_the_pressure():
         assert row == pytest.approx([4.5 * mass, 19.62 * mass, mass * work], rel=1e-6, abs=1e-12)
 
 
+def test_the_budget_counts_the_work_of_the_gate_on_the_water():
+    """A plate that stands in water with its edge off the floor is lifted by the pressure under that edge."""
+    thick, speed, until = 0.04, 0.05, 0.2
+    s = simulation(TANK | {"box": {"max": [0.4, 1.0, 0.3]}, "run": {"until": 1.0, "settle": 1.0},
+                           "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.2]}]},
+                           "gate": {"min_x": 0.18, "max_x": 0.18 + thick, "bottom": 0.1, "speed": speed}})  # fmt: skip
+    while s.time < 0.0:
+        s.step()
+    p, at = s.domain.particles, s.near.fluid
+    level = p.z[at].max() + 0.005
+    while s.time < until:
+        s.step()
+    lifted = 9810.0 * (level - 0.1 - 0.5 * speed * until) * thick * speed * until
+    assert s.contacts.gate_work == pytest.approx(-lifted, rel=0.15)
+
+
 def decay_error(spacing, across):
     """Relative error of the decay of u = sin(k x) along one of two directions that average a square lattice out."""
     fill = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.2]}]

@@ -54,6 +54,15 @@ class Solids:
         self.films.keep(*rims)
         self._load = self.samples.answer(flow.particles, near, *pose, load, inertia, lever, time)
 
+    def driven(self, time):
+        """Whether the gate moves at `time`, s."""
+        return self.gate is not None and self.gate.velocity(time) != 0.0
+
+    def drive(self, flow, reaction, time, dt):
+        """Account for the work that the gate does on the water, whose `reaction` on `near.gate` it is, in `dt`, s."""
+        force, = flow.domain.sum(reaction[0][:, 2:])
+        self.contacts.gate_work -= float(force) * self.gate.velocity(time) * dt
+
     def advance(self, flow, time, dt):
         """Move the bodies over `dt`, s, under what has pushed them, and place the samples there."""
         if len(self.bodies):

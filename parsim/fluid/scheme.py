@@ -28,6 +28,12 @@ class Solids(Protocol):
         The accelerations that follow, and the pressures with them, are then those of the samples.
         """
 
+    def driven(self, time):
+        """Whether anything solid is driven from outside at `time`, s."""
+
+    def drive(self, flow, reaction, time, dt):
+        """Account for the work that what is driven does on the water, whose `reaction` on `near.gate` it is."""
+
     def advance(self, flow, time, dt):
         """Move the bodies over dt, s, under what has pushed them, gravity and contacts, and place the samples there."""
 

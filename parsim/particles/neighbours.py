@@ -12,7 +12,7 @@ import numpy as np
 from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.cells import REACH
 from parsim.particles.sight import cut_rows
-from parsim.particles.state import FLUID, SURFACE
+from parsim.particles.state import BODY, FLUID, GATE_DOWN, GATE_UP, SURFACE
 from parsim.particles.tables import Lists
 
 _TALL = 2  # cells of a block, one above the other
@@ -37,15 +37,16 @@ class Neighbours:
     """Lists of one rank: row i holds index[start[i]:middle[i]] fluid and index[middle[i]:end[i]] boundary particles.
 
     `fluid` and `boundary` are the owned particles (int64 indices) that have neighbours to look at; `inner` and `border`
-    are the `fluid` that cannot and that may see a halo; `body` those of `boundary` that sample a rigid body. Rows of
-    boundary particles hold fluid only. Rows are packed: `expected` is the length that they get room for on average.
+    are the `fluid` that cannot and that may see a halo; `body` and `gate` those of `boundary` that sample a rigid body
+    or the gate. Rows of boundary particles hold fluid only. Rows are packed: `expected` is the length that they get
+    room for on average.
     """
 
     def __init__(self, expected):
         self.expected = float(expected)
         self.start = self.middle = self.end = np.zeros(0, np.int64)
         self.index = np.zeros(0, np.uint32)
-        self.fluid = self.inner = self.border = self.boundary = self.body = np.zeros(0, np.int64)
+        self.fluid = self.inner = self.border = self.boundary = self.body = self.gate = np.zeros(0, np.int64)
 
     @property
     def lists(self):
@@ -91,7 +92,12 @@ class Neighbours:
         edge = border[self.fluid - owned.start]
         self.inner, self.border = self.fluid[~edge], self.fluid[edge]
         self.boundary = real[(p.kind[real] != FLUID) & (self.end[real] > self.start[real])]
-        self.body = self.boundary[p.body[self.boundary] >= 0]
+        self._sort_boundary(p)
+
+    def _sort_boundary(self, p):
+        kind = p.kind[self.boundary]
+        self.body = self.boundary[kind == BODY]
+        self.gate = self.boundary[(kind == GATE_UP) | (kind == GATE_DOWN)]
 
     def cut_by_gate(self, particles, radius, gate, time):
         """Take out the pairs that the gate hides from each other at `time`, s."""
@@ -103,7 +109,7 @@ class Neighbours:
         near = near[(p.x[near] > gate.min_x - 2.5 * radius) & (p.x[near] < gate.max_x + 2.5 * radius)]
         cut_rows(near, p.place, p.kind, (gate.min_x, gate.max_x, barrier), self.lists)
         self.boundary = self.boundary[self.end[self.boundary] > self.start[self.boundary]]
-        self.body = self.body[self.end[self.body] > self.start[self.body]]
+        self._sort_boundary(p)
 
 
 @kernel

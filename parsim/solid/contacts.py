@@ -34,8 +34,8 @@ _FAR = 1e3  # half edges of the gate over the size of the box: it has neither en
 class Contacts:
     """Moves the bodies of a case, deterministically: every rank does the same and gets the same bits.
 
-    Attributes: dissipated, J, energy lost in contacts so far; gate_work, J, work of the gate on bodies so far; count,
-    elements that touch; steps, sub-steps of the last step.
+    Attributes: dissipated, J, energy lost in contacts so far; gate_work, J, work of the gate on bodies and on water so
+    far; count, elements that touch; steps, sub-steps of the last step.
     """
 
     def __init__(self, bodies, case, gate=None):

@@ -80,7 +80,9 @@ class WCMPS:
             self._predict(p, dt)
         self._press(p, near)
         with self.timers("bodies"):
-            solids.push(flow, self._react(p, near, dt), time, dt)
+            solids.push(flow, self._react(p, near, near.body, dt), time, dt)
+            if solids.driven(time + 0.5 * dt):
+                solids.drive(flow, self._react(p, near, near.gate, dt), time + 0.5 * dt, dt)
         self._accelerate(domain, near, dt)
         with self.timers("move"):
             updates.kick(near.fluid, self.gravity, flow.keep, dt, p.acceleration, p.velocity)
@@ -114,14 +116,14 @@ class WCMPS:
             sweeps.momentum(at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration,
                             around)
 
-    def _react(self, p, near, dt):
-        """Forces of the water on the body samples `near.body`, N: (samples, 3), and how they depend on accelerations.
+    def _react(self, p, near, at, dt):
+        """Forces of the water on the samples `at`, N: (samples, 3), and how they depend on accelerations.
 
         Also `lever` (samples, 3), Pa s2/m, and `response` (samples, 6), kg: see `sweeps.reaction`.
         """
-        forces, count = self._forces(dt), near.body.size
+        forces, count = self._forces(dt), at.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
-        sweeps.reaction(near.body, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces,
+        sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces,
                         out)
         return self.mass * out.force, out.lever, self.mass * out.response
 
