@@ -87,10 +87,10 @@ def _planar(body):
 
 def _outside(case, body):
     corners = geometry.of_body(body).corners
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    low, high, around = corners.min(axis=0), corners.max(axis=0), repeats(case)
     for axis in case.axes:
         name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
-        if repeats(case)[axis]:
+        if around[axis]:
             low[axis] = high[axis] = body.position[axis]
         if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
             yield (

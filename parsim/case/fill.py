@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from parsim.geometry import boxes as geometry
+from parsim.geometry.faces import repeats
 
 TOUCH = 1e-9  # m: a smaller overlap or gap is rounding
 _MISSED = 0.005  # share of the water asked for that may be missing, or too much, without a word
@@ -124,7 +125,7 @@ def _thin(case, fill):
     """Doubts about a fill with fewer particles across than the support has, on axes along which no other touches it."""
     for axis in case.axes:
         length, name = fill.max[axis] - fill.min[axis], "xyz"[axis]
-        endless = getattr(case.box.faces, f"{name}_min") == "periodic" and length >= case.box.size[axis] - TOUCH
+        endless = repeats(case)[axis] and length >= case.box.size[axis] - TOUCH
         alone = not any(_touches(fill, other, axis) for other in case.water.fill)
         if length < case.water.support * case.spacing - TOUCH and alone and not endless:
             yield (

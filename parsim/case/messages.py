@@ -154,15 +154,21 @@ def _chosen(tables, value):
     return (named or tables or [None])[0]
 
 
-def _model_at(model, data, place):
-    """The table model at `place` below `model`; steps that choose an entry of a list or table are passed over."""
-    steps = iter(place)
+def _tables_at(model, data, place):
+    """(table models among which there is a choice at `place` below `model`, value there); steps that choose an entry of
+    a list or table are passed over."""
+    tables, steps = [model], iter(place)
     for step in steps:
-        annotation, data = model.model_fields[step].annotation, _step(data, step)
+        annotation, data = _chosen(tables, data).model_fields[step].annotation, _step(data, step)
         if get_origin(annotation) in (tuple, dict):
             data = _step(data, next(steps, None))
-        model = _chosen(_tables(annotation), data)
-    return model
+        tables = _tables(annotation)
+    return tables, data
+
+
+def _model_at(model, data, place):
+    """The table model at `place` below `model`."""
+    return _chosen(*_tables_at(model, data, place))
 
 
 def _description(model, data, place):
@@ -171,19 +177,12 @@ def _description(model, data, place):
     if not names:
         return ""
     *above, key = place[: names[-1] + 1]
-    field = _model_at(model, data, above).model_fields.get(key)
-    if key == CHOICE and (kinds := _kinds(model, data, above)):
+    tables, value = _tables_at(model, data, above)
+    if key == CHOICE and tables[1:]:
+        kinds = [get_args(table.model_fields[CHOICE].annotation)[0] for table in tables]
         return f"one of {', '.join(map(repr, kinds))}"
+    field = _chosen(tables, value).model_fields.get(key)
     return field.description if field else ""
-
-
-def _kinds(model, data, place):
-    """What a key CHOICE of the table at `place` may be, where there is a choice of tables."""
-    *above, last = place
-    above = above[:-1] if isinstance(last, int) else above
-    annotation = _model_at(model, data, above).model_fields[last].annotation if isinstance(last, str) else None
-    tables = _tables(annotation)
-    return [get_args(table.model_fields[CHOICE].annotation)[0] for table in tables] if tables[1:] else []
 
 
 def _all_keys(model, path=""):

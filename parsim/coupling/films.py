@@ -69,7 +69,6 @@ class Found(NamedTuple):
     heads: np.ndarray
 
 
-
 class Films:
     """The patches of all bodies. What they need from step to step is in `bodies.film`: see `Bodies`.
 

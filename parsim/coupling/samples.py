@@ -27,7 +27,6 @@ class Motion(NamedTuple):
     angular: np.ndarray
 
 
-
 class BodySamples:
     """Even samplings of all bodies at about the spacing, down to a support below their surface.
 

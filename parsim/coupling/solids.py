@@ -42,10 +42,12 @@ class Solids:
         """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""
         self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
 
+    def pushed(self):
+        """Whether there are bodies for the water to push."""
+        return len(self.bodies) > 0
+
     def push(self, flow, reaction, time, dt):
         """Give the bodies, and their samples, the accelerations that the water's load gives them; see `Scheme`."""
-        if not len(self.bodies):
-            return
         domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
         force, lever, response = reaction
         plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)

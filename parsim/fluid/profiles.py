@@ -6,10 +6,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from parsim.case.fill import TOUCH
 from parsim.case.messages import short
 from parsim.case.types import Moderate, Number, Real, Table
-
-_TOUCH = 1e-9  # m: less is rounding
 
 
 class Linear(Table):
@@ -64,7 +63,7 @@ class Tabled(Table):
         ascending = all(low < high for low, high in zip(self.heights, self.heights[1:], strict=False))
         if len(self.heights) < 2 or not ascending:
             found.append(f"heights = {heights}: must be two or more, ascending")
-        elif self.heights[0] < -_TOUCH or self.heights[-1] > depth + _TOUCH:
+        elif self.heights[0] < -TOUCH or self.heights[-1] > depth + TOUCH:
             found.append(f"heights = {heights}: must be heights in the fill, 0 to {depth:.6g} m above its bottom")
         if len(self.shares) != len(self.heights):
             found.append(f"shares: {len(self.shares)} entries for {len(self.heights)} heights; must be as many")

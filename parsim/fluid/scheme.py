@@ -22,6 +22,9 @@ class Solids(Protocol):
     def place(self, flow, time, ahead):
         """Bring the samples of all that is solid to where it is at time + ahead, s."""
 
+    def pushed(self):
+        """Whether there is anything that the water can push."""
+
     def push(self, flow, reaction, time, dt):
         """Let the water push the bodies: `reaction` is its force on the samples `near.body` and what that depends on.
 

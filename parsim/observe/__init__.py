@@ -9,14 +9,15 @@ from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
 
-OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front, Lost)
-TABLES = {observer.name: table(observer) for observer in OBSERVERS}  # unit of every column of every series, by names
+OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front)  # what is seen at a time; what has left is told at once
+# unit of every column of every series, by names
+TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
 
 
 def rows_now(case, simulation):
-    """What every observer but that of the lost says of a simulation as it is: {name: {column: list of values}}."""
+    """What every observer says of a simulation as it is: {name: {column: list of values}}."""
     found = {}
-    for observer in OBSERVERS[:-1]:
+    for observer in OBSERVERS:
         rows = observer(case).rows(simulation)
         names = [column.name for column in observer.columns]
         found[observer.name] = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True)) if rows else {}

@@ -64,7 +64,7 @@ class Recorder:
 
     def begin(self, simulation):
         """Open the tables; write the first rows and frame, unless the run goes on."""
-        self.observers = [observer(self.case) for observer in OBSERVERS]
+        self.observers, self.lost = [observer(self.case) for observer in OBSERVERS], Lost(self.case)
         self.next_frame, self.next_row = simulation.time, simulation.time
         self.particles = {"fluid": simulation.fluid_count, "active": simulation.active,
                           "wall": len(simulation.solids.walls), "body": len(simulation.solids.samples)}
@@ -127,10 +127,10 @@ class Recorder:
 
     def _seen(self, simulation):
         """Rows of every series but that of what is lost: {name: rows}."""
-        return {observer.name: observer.rows(simulation) for observer in self.observers if observer.name != Lost.name}
+        return {observer.name: observer.rows(simulation) for observer in self.observers}
 
     def _tell_gone(self, simulation):
-        for row in Lost(self.case).rows(simulation):
+        for row in self.lost.rows(simulation):
             self.tables[Lost.name].row(*row)
             _, time, what, *_ = row
             if what != "water":

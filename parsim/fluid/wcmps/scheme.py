@@ -80,7 +80,8 @@ class WCMPS:
             self._predict(p, dt)
         self._press(p, near)
         with self.timers("bodies"):
-            solids.push(flow, self._react(p, near, near.body, dt), time, dt)
+            if solids.pushed():
+                solids.push(flow, self._react(p, near, near.body, dt), time, dt)
             if solids.driven(time + 0.5 * dt):
                 solids.drive(flow, self._react(p, near, near.gate, dt), time + 0.5 * dt, dt)
         self._accelerate(domain, near, dt)
