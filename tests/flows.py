@@ -6,6 +6,7 @@ import numpy as np
 
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
+from parsim.fluid.wcmps.settings import Settings
 from parsim.run.simulation import Simulation
 
 GRAVITY = 9.81
@@ -31,13 +32,17 @@ def simulation(data, **changes):
 
 
 def tank(length, height, spacing, fill=None, across=None, periodic="", **water):
-    """A case: a tank of water; `fill` its highest corner (x, z); `across` the width in y, m, or None in 2D."""
+    """A case: a tank of water; `fill` its highest corner (x, z); `across` the width in y, m, or None in 2D.
+
+    `water`: keys of that table, or of its scheme.
+    """
     faces = {f"{axis}_{side}": "periodic" for axis in periodic for side in ("min", "max")}
     width = 1.0 if across is None else across
+    scheme = {key: water.pop(key) for key in list(water) if key in Settings.model_fields}
     x, z = fill or (length, height)
     return {"dimensions": 2 if across is None else 3, "spacing": spacing, "run": {"until": 1e3},
             "box": {"max": [length, width, height], "faces": faces},
-            "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [x, width, z]}], **water}}
+            "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [x, width, z]}], "scheme": scheme, **water}}
 
 
 def fluid(s):

@@ -120,8 +120,8 @@ def test_a_profile_of_water_at_rest_is_told():
 @pytest.mark.parametrize(("support", "doubtful"), [(2.1, True), (2.59, True), (2.6, False), (4.0, False)])
 def test_a_support_with_which_water_boils_is_told(support, doubtful):
     case = fills((0.0, 0.4, 0.0, 0.2))
-    case["water"] |= {"support": support}
-    assert (f"water.support = {support}: too small" in told(case)) is doubtful
+    case["water"] |= {"scheme": {"support": support}}
+    assert (f"water.scheme.support = {support}: too small" in told(case)) is doubtful
 
 
 @pytest.mark.parametrize(("share", "doubtful"), [(0.99, False), (1.01, True)])

@@ -15,7 +15,8 @@ def profile(words):
 
 # base case, changes, fragments of the messages
 BROKEN = {
-    "unknown key in a table": ("3d", ["water.suport=3"], ["water.suport: unknown key", "did you mean water.support?"]),
+    "unknown key in a table": ("3d", ["water.scheme.suport=3"],
+                               ["water.scheme.suport: unknown key", "did you mean water.scheme.support?"]),
     "unknown key of a body": ("3d", ["bodies.A1.densty=3"], ["bodies.A1.densty: unknown key", "bodies.A1.density?"]),
     "edge of a body that is nothing": ("3d", ["bodies.A1.shape.size=[5e-324,0.05,0.02]"],
                                        ["bodies.A1.shape.size.0 = 5e-324: must be at least 1e-09"]),
@@ -24,7 +25,7 @@ BROKEN = {
     "key of another table": ("3d", ["run.restitution=0.5"], ["run.restitution: unknown key; did you mean"]),
     "text for a number": ("3d", ["spacing=fine"], ["spacing = 'fine': must be a number", "l0, m"]),
     "switch for a number": ("3d", ["run.cfl=true"], ["run.cfl = True: must be a number"]),
-    "number for a switch": ("3d", ["water.shifting=1"], ["water.shifting = 1: must be true or false"]),
+    "number for a switch": ("3d", ["water.scheme.shifting=1"], ["water.scheme.shifting = 1: must be true or false"]),
     "number for a text": ("3d", ["title=1"], ["title = 1: must be a text"]),
     "number for a whole number": ("3d", ["run.rebuild_at_most=2.5"], ["run.rebuild_at_most = 2.5: must be a whole"]),
     "number for a table": ("3d", ["gate=1"], ["gate = 1: must be a table"]),
@@ -37,10 +38,10 @@ BROKEN = {
     "zero end": ("3d", ["run.until=0"], ["run.until = 0: must be greater than 0"]),
     "negative settling": ("3d", ["run.settle=-1"], ["run.settle = -1: must be at least 0"]),
     "cfl too large": ("3d", ["run.cfl=2"], ["run.cfl = 2: must be at most 1.75"]),
-    "support too small": ("3d", ["water.support=1.5"], ["water.support = 1.5: must be at least 2.1"]),
+    "support too small": ("3d", ["water.scheme.support=1.5"], ["water.scheme.support = 1.5: must be at least 2.1"]),
     "frames of no time": ("3d", ["output.frames=0"], ["output.frames = 0: must be greater than 0"]),
     "poisson out of range": ("3d", ["materials.polypropylene.poisson=0.5"], ["poisson = 0.5: must be less than 0.5"]),
-    "unknown scheme": ("3d", ["water.scheme=sph"], ["water.scheme = 'sph': must be 'wcmps'"]),
+    "unknown scheme": ("3d", ["water.scheme.kind=sph"], ["water.scheme.kind = 'sph': must be 'wcmps'"]),
     "unknown face": ("3d", ["box.faces.x_min=glass"], ["box.faces.x_min = 'glass': must be 'wall', 'open' or 'per"]),
     "gate faster than sound": ("3d", ["gate.speed=500.0"], ["gate.speed: 500 m/s; must be less than the speed"]),
     "body faster than sound": ("3d", ["bodies.A1.velocity=[0,0,-900]"], ["bodies.A1.velocity, spin: 900 m/s; must be"]),
@@ -90,8 +91,9 @@ BROKEN = {
                                 ["profile.roughness: unknown key; did you mean water.fill.NAME.profile.roughness?"]),
     "key of a linear profile": ("3d", profile('kind="table", heights=[0.0, 0.1], shares=[1.0, 1.0], bottom=0.5'),
                                 ["profile.bottom: unknown key; did you mean water.fill.NAME.profile.bottom?"]),
-    "unknown weight": ("3d", ["water.weight=gauss"], ["'gauss': must be 'wendland_c4', 'wendland_c2' or 'mps'"]),
-    "too much damping": ("3d", ["water.noise_damping=0.1"], ["water.noise_damping = 0.1: must be at most 0.005"]),
+    "unknown weight": ("3d", ["water.scheme.weight=gauss"], ["'gauss': must be 'wendland_c4', 'wendland_c2' or 'mps'"]),
+    "too much damping": ("3d", ["water.scheme.noise_damping=0.1"],
+                         ["water.scheme.noise_damping = 0.1: must be at most 0.005"]),
     "damping that was": ("3d", ["water.damping_viscosity=0.01"], ["water.damping_viscosity: unknown key"]),
     "too much disorder": ("3d", ["water.disorder=0.6"], ["water.disorder = 0.6: must be at most 0.5"]),
     "no gravity, no speed": ("3d", ["gravity=[0,0,0]"], ["water.speed: missing", "without gravity"]),
@@ -134,7 +136,7 @@ BROKEN = {
     "plane: box width": ("2d", ["box.max=[0.5,2.0,0.6]"], ["y = 0.0 to 2.0: must be 0 to 1 in a 2D case"]),
     "plane: y faces": ("2d", ["box.faces.y_min=open"], ["a 2D case has none; leave them out"]),
     "several at once": ("3d", ["water.suport=3.1", "spacing=0.007", "gate.max_x=7", "wall_material=glass"],
-                        ["water.support?", "spacing = 0.007", "gate.max_x = 7", 'wall_material = "glass"']),
+                        ["water.scheme.support?", "spacing = 0.007", "gate.max_x = 7", 'wall_material = "glass"']),
 }  # fmt: skip
 
 # text of a whole file, fragments of the messages

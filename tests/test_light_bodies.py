@@ -95,7 +95,8 @@ def test_no_water_is_left_in_an_edge_of_a_body_or_flung_out_of_it(weight, second
               for name, x in (("a", 2.0), ("b", 2.0 + second))]  # fmt: skip
     simulation = Simulation(parse({
         "dimensions": 2, "spacing": 0.01, "box": {"max": [0.4, 1.0, 0.2]}, "bodies": blocks, "run": {"until": 1.0},
-        "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.02]}], "speed": 1.5, "weight": weight},
+        "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.02]}], "speed": 1.5,
+                  "scheme": {"weight": weight}},
         "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
     }), Comm())  # fmt: skip
     for _ in range(10):

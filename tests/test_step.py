@@ -58,7 +58,7 @@ def test_nothing_changes_faster_than_the_step_knows(dimensions, support, weight)
 
 @pytest.mark.parametrize("weight", list(WEIGHTS))
 def test_the_strongest_noise_damping_is_stable(weight):
-    s = simulation(OIL, water={"noise_damping": 0.005, "support": 2.6, "weight": weight})
+    s = simulation(OIL, water={"scheme": {"noise_damping": 0.005, "support": 2.6, "weight": weight}})
     start = energy(s)
     for _ in range(200):
         s.step()

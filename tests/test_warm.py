@@ -51,7 +51,8 @@ def _drawn(dice):
     case = {
         "dimensions": 2 if flat else 3, "spacing": 0.01, "box": {"max": [0.4, width, 0.2], "faces": faces},
         "water": {"fill": dice.choice(([fill], [fill], [])), "speed": 1.5, "disorder": dice.choice((0.0, 0.1)),
-                  "weight": dice.choice(("wendland_c4", "wendland_c2", "mps")), "shifting": dice.random() < 0.8},
+                  "scheme": {"weight": dice.choice(("wendland_c4", "wendland_c2", "mps")),
+                             "shifting": dice.random() < 0.8}},
         "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
         "run": {"until": 1.0, "settle": dice.choice((0.0, 0.1))},
         "bodies": [_block(dice, number, width) for number in range(dice.choice((0, 0, 1, 2, 3, 5, 80)))],

@@ -81,7 +81,7 @@ def test_settled_water_does_not_jump_at_the_start():
 @pytest.mark.parametrize("shifting", [True, False])
 def test_momentum_stays_in_a_periodic_box(shifting):
     fill = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.2], "velocity": [0.3, 0.0, -0.2]}]
-    s = simulation(TANK | PERIODIC | {"water": {"fill": fill, "speed": 1.0, "shifting": shifting}})
+    s = simulation(TANK | PERIODIC | {"water": {"fill": fill, "speed": 1.0, "scheme": {"shifting": shifting}}})
     p, rng = s.domain.particles, np.random.default_rng(2)
     kick = rng.normal(scale=0.2, size=(2, s.near.fluid.size))
     p.u[s.near.fluid] += kick[0]

@@ -39,4 +39,4 @@ def floating_blocks(spacing, support):
 
 def _case(support, spacing, size, fill):
     return {"dimensions": 3, "spacing": spacing, "box": {"max": size}, "run": {"until": 100.0},
-            "water": {"support": support, "fill": fill}}
+            "water": {"scheme": {"support": support}, "fill": fill}}

@@ -107,7 +107,7 @@ def speeds(case):
     if case.gate:
         found.append(("gate.speed", case.gate.speed))
     return [f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
-            "which is water.sound times water.speed" for key, speed in found if not speed < case.sound_speed]
+            "which is water.scheme.sound times water.speed" for key, speed in found if not speed < case.sound_speed]
 
 
 def _fastest(case, body):

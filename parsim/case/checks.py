@@ -39,17 +39,7 @@ def doubts(case):
         f"bodies.{name}: leaves a passage of {gap:.3g} m, {gap / case.spacing:.2g} spacings, to {other}; water passes "
         f"as it should through {bodies.PASSAGE:g} spacings or more"
         for name, other, gap in bodies.narrow_passages(case)
-    ] + _support(case) + fills.doubts(case)
-
-
-def _support(case):
-    """Doubts about a support with which water at rest does not stay so (2D, ten rows, 1 s)."""
-    if case.water.support >= 2.6:
-        return []
-    return [
-        f"water.support = {case.water.support!r}: too small: water at rest boils at 2.1, and at 2.3 to 2.5 its "
-        "pressure scatters by 0.1 to 1 % where that is 0.01 % at 3.1; 2.7 or more is quiet"
-    ]
+    ] + case.water.scheme.doubts() + fills.doubts(case)
 
 
 def _completed(case):

@@ -34,7 +34,7 @@ class Estimate:
 
 def estimate(case):
     """The cost of a case. Active are water, bodies, and walls and gate up to the highest level of the fill."""
-    layers = math.ceil(case.water.support)
+    layers = math.ceil(case.water.scheme.support)
     wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
     water, gate = round(_water(case)), _gate(case, layers)
     body = sum(_samples(case, body, layers) for body in case.bodies)
@@ -54,9 +54,7 @@ def estimate(case):
 
 def time_step(case):
     """Time step at the largest expected speed, s."""
-    from parsim.fluid.wcmps.scheme import WCMPS  # brings numba along, whose settings a run makes first
-
-    return WCMPS(case).time_step(case.speed)
+    return case.water.scheme.scheme(case).time_step(case.speed)
 
 
 def disk(case, water):
@@ -169,5 +167,5 @@ def _gate(case, layers):
 
 def _neighbours(case):
     """Mean length of a neighbour list inside the water."""
-    reach = case.water.support + case.run.skin
+    reach = case.water.scheme.support + case.run.skin
     return math.pi * reach**2 if case.dimensions == 2 else 4 / 3 * math.pi * reach**3

@@ -95,7 +95,7 @@ def _speed(case, fill):
     if fastest >= sound > 0:
         yield (
             f"velocity = {list(fill.velocity)}: reaches {fastest:.4g} m/s, must be less than the speed of sound in the "
-            f"model, {sound:.4g} m/s = water.sound x water.speed; give water.speed, the largest expected speed"
+            f"model, {sound:.4g} m/s = water.scheme.sound x water.speed; give water.speed, the largest expected speed"
         )
 
 
@@ -127,10 +127,10 @@ def _thin(case, fill):
         length, name = fill.max[axis] - fill.min[axis], "xyz"[axis]
         endless = repeats(case)[axis] and length >= case.box.size[axis] - TOUCH
         alone = not any(_touches(fill, other, axis) for other in case.water.fill)
-        if length < case.water.support * case.spacing - TOUCH and alone and not endless:
+        if length < case.water.scheme.support * case.spacing - TOUCH and alone and not endless:
             yield (
                 f": {max(1, round(length / case.spacing))} particles along {name}, {length:.6g} m; fewer than the "
-                f"support, {case.water.support:g}, give coarse pressures and levels"
+                f"support, {case.water.scheme.support:g}, give coarse pressures and levels"
             )
 
 

@@ -5,9 +5,9 @@ from typing import get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from parsim.case.types import CHOICE, TAG, kind_of
 from parsim.errors import InputError, nearest, suggestion
 
-CHOICE = "kind"  # the key that names which of several tables is meant
 _ALLOWED = {
     "missing": "missing",
     "float_type": "must be a number",
@@ -52,17 +52,18 @@ def _placed(data, fault):
     """A fault with its place as in the file: where there is a choice of tables pydantic puts in which was chosen."""
     place, value = [], data
     for step in fault["loc"]:
-        if isinstance(value, dict) and step not in value and step == value.get(CHOICE):
+        if isinstance(step, str) and step.startswith(TAG):
             continue
         place.append(step)
         value = _step(value, step)
     changed = {"loc": tuple(place)}
     if fault["type"] == "union_tag_invalid":
-        *others, last = fault["ctx"]["expected_tags"].split(", ")
+        *others, last = fault["ctx"]["expected_tags"].replace(TAG, "").split(", ")
         changed = {"loc": (*place, CHOICE), "type": "literal_error",
                    "ctx": {"expected": f"{', '.join(others)} or {last}"}}
     elif fault["type"] == "union_tag_not_found":
-        changed = {"loc": (*place, CHOICE), "type": "missing"}
+        table = isinstance(value, dict)
+        changed = {"loc": (*place, CHOICE), "type": "missing"} if table else {"loc": tuple(place), "type": "model_type"}
     return fault | changed
 
 
@@ -179,8 +180,7 @@ def _description(model, data, place):
     *above, key = place[: names[-1] + 1]
     tables, value = _tables_at(model, data, above)
     if key == CHOICE and tables[1:]:
-        kinds = [get_args(table.model_fields[CHOICE].annotation)[0] for table in tables]
-        return f"one of {', '.join(map(repr, kinds))}"
+        return f"one of {', '.join(repr(kind_of(table)) for table in tables)}"
     field = _chosen(tables, value).model_fields.get(key)
     return field.description if field else ""
 

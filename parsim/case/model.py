@@ -24,7 +24,6 @@ from parsim.case.types import (
     Place,
     Positive,
     Real,
-    Share,
     Size,
     Switch,
     Table,
@@ -32,6 +31,7 @@ from parsim.case.types import (
     Whole,
 )
 from parsim.fluid.profiles import Profile
+from parsim.fluid.schemes import DEFAULT, Scheme
 
 
 class Faces(Table):
@@ -70,28 +70,13 @@ class Fill(Table):
 
 
 class Water(Table):
-    """The water and the scheme that moves it."""
+    """The water, and the scheme that moves it."""
 
-    scheme: Literal["wcmps"] = Field("wcmps", description="weakly compressible moving particles (Mellado 2021, ch. 5)")
+    scheme: Scheme = Field(DEFAULT, description="the scheme that moves it")
     density: Positive = Field(1000.0, description="density, kg/m3")
     viscosity: NotNegative = Field(1e-6, description="kinematic viscosity, m2/s")
     speed: Moderate | None = Field(
         None, description="largest expected speed, m/s; left out: 2 sqrt(g H), H the greatest depth of the fill"
-    )
-    sound: Real = Field(10.0, ge=5, le=1000, description="speed of sound over the largest expected speed")
-    weight: Literal["wendland_c4", "wendland_c2", "mps"] = Field(
-        "wendland_c4", description="weight of the sums over neighbours; mps is re / r - 1"
-    )
-    support: Real = Field(3.1, ge=2.1, le=4, description="radius of the support over the spacing")
-    diffusion: Share = Field(0.5, description="diffusion of density, delta")
-    noise_damping: Annotated[Real, Field(ge=0, le=0.005)] = Field(
-        0.00015, description="damping of what changes from particle to particle: a biharmonic viscosity over c0 l0^3"
-    )
-    restitution: Share = Field(0.5, description="restitution of water that comes too close to walls and bodies")
-    collision_distance: Share = Field(0.9, description="distance of water that comes too close, over the spacing")
-    shifting: Switch = Field(True, description="whether particles are shifted to keep them evenly spread")
-    recovery: Share = Field(
-        0.1, description="rate at which shifted water takes the density of its arrangement, over 2 sqrt(g / depth)"
     )
     disorder: Annotated[Real, Field(ge=0, le=0.5)] = Field(
         0.0, description="how far particles are off the lattice at the start, at most, over the spacing"
@@ -229,7 +214,7 @@ class Case(Table):
     @property
     def sound_speed(self):
         """Speed of sound of the water model, c0, m/s."""
-        return self.water.sound * self.speed
+        return self.water.scheme.sound * self.speed
 
     @property
     def axes(self):

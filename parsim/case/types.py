@@ -1,8 +1,8 @@
 """What the tables of a case file are made of. What may be chosen has its table in a file of its own, as its physics."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Union, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, Strict
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Strict, Tag
 
 Real = Annotated[float, Strict()]
 Whole = Annotated[int, Strict()]
@@ -18,9 +18,33 @@ Moderate = Annotated[Real, Field(ge=1e-9, le=1e9)]
 Size = tuple[Moderate, Moderate, Moderate]
 Place = tuple[Number, Number, Number | Literal["float"]]
 Face = Literal["wall", "open", "periodic"]
+CHOICE = "kind"  # the key that names which of several tables is meant
+TAG = f"{CHOICE}="  # begins the steps that pydantic puts into a place for it
 
 
 class Table(BaseModel):
     """A table of the case file: frozen, unknown keys refused, no silent conversion of types."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+def kind_of(table):
+    """The `kind` that a table model is."""
+    return get_args(table.model_fields[CHOICE].annotation)[0]
+
+
+def choice(*tables):
+    """The annotation of a key that holds one of several tables, told apart by their `kind`.
+
+    Where it is left out the first is meant, if its `kind` has a default.
+    """
+    if not tables[1:]:
+        return tables[0]
+    default = None if tables[0].model_fields[CHOICE].is_required() else kind_of(tables[0])
+
+    def named(value):
+        kind = value.get(CHOICE, default) if isinstance(value, dict) else getattr(value, CHOICE, None)
+        return kind and TAG + str(kind)
+
+    tagged = tuple(Annotated[table, Tag(TAG + kind_of(table))] for table in tables)
+    return Annotated[Union[tagged], Discriminator(named)]  # noqa: UP007

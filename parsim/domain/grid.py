@@ -17,12 +17,12 @@ def check_ranks(case, ranks):
 
 def layers_of(case):
     """Layers of boundary particles that fill the support."""
-    return math.ceil(case.water.support)
+    return math.ceil(case.water.scheme.support)
 
 
 def reach_of(case):
     """Radius of the neighbour lists, m."""
-    return (case.water.support + case.run.skin) * case.spacing
+    return (case.water.scheme.support + case.run.skin) * case.spacing
 
 
 def grid_of(case):

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from parsim.case.fill import TOUCH
 from parsim.case.messages import short
-from parsim.case.types import Moderate, Number, Real, Table
+from parsim.case.types import Moderate, Number, Real, Table, choice
 
 
 class Linear(Table):
@@ -70,4 +70,4 @@ class Tabled(Table):
         return found
 
 
-Profile = Annotated[Linear | Log | Tabled, Field(discriminator="kind")]
+Profile = choice(Linear, Log, Tabled)

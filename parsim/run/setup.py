@@ -3,7 +3,6 @@
 from parsim.coupling.solids import Solids
 from parsim.domain.domain import Domain
 from parsim.domain.grid import grid_of, layers_of, reach_of
-from parsim.fluid.wcmps.scheme import WCMPS
 from parsim.particles.neighbours import Neighbours
 
 _ROOM = 1.03  # length of the neighbour rows over that of the full lattice
@@ -14,8 +13,8 @@ class Models:
 
     def __init__(self, case, comm, timers):
         self.reach = reach_of(case)
-        self.scheme = WCMPS(case, timers)
+        self.scheme = case.water.scheme.scheme(case, timers)
         self.solids = Solids(case, layers_of(case), self.scheme.lattice, timers)
         self.domain = Domain(grid_of(case), comm, self.solids.sources, timers=timers)
-        share = (1.0 + case.run.skin / case.water.support) ** case.dimensions
+        share = (1.0 + case.run.skin / case.water.scheme.support) ** case.dimensions
         self.near = Neighbours(self.scheme.lattice.count * share * _ROOM)

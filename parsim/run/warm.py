@@ -133,7 +133,7 @@ def exercise():
     from parsim.observe import rows_now
     from parsim.run.simulation import Simulation
 
-    weights = [_CASE | {"water": _CASE["water"] | {"weight": name}} for name in WEIGHTS]
+    weights = [_CASE | {"water": _CASE["water"] | {"scheme": {"weight": name}}} for name in WEIGHTS]
     for data in (*weights, _CASE | _PERIODIC):
         case = parse(data)
         simulation = Simulation(case, Comm())

@@ -29,26 +29,26 @@ class WCMPS:
     STATE = ("x", "y", "z", "u", "v", "w", "n", "rate", *ISOTROPY)  # what the halos need of the full step
 
     def __init__(self, case, timers=None):
-        water = case.water
+        water, choice = case.water, case.water.scheme
         self.timers = timers or Timers()
-        self.lattice = lattice = Lattice(case.dimensions, case.spacing, water.support, water.weight)
+        self.lattice = lattice = Lattice(case.dimensions, case.spacing, choice.support, choice.weight)
         self.density, self.sound, self.gravity = water.density, case.sound_speed, case.gravity
         self.stiffness = self.sound**2 * water.density / 7.0
-        self.viscosity, self.noise_damping = water.viscosity, water.noise_damping
+        self.viscosity, self.noise_damping = water.viscosity, choice.noise_damping
         self.mass = water.density * self.lattice.volume
-        self.cfl, self.diffusion, self.shifting = case.run.cfl, water.diffusion, water.shifting
+        self.cfl, self.diffusion, self.shifting = case.run.cfl, choice.diffusion, choice.shifting
         stiffest = 2.0 * self._viscous * lattice.slopes / lattice.dimensions
         # 1/s: how fast viscosity and noise damping end what changes from particle to particle
         self._fading = stiffest * (self.viscosity + self.noise_damping * self.sound * lattice.spacing**3 * stiffest)
-        self.loosest = 0.5 / water.sound**2  # the stagnation pressure of the largest expected speed
+        self.loosest = 0.5 / choice.sound**2  # the stagnation pressure of the largest expected speed
         gravity = math.hypot(*case.gravity)
         # so much closer than the lattice does the model's water lie under half its depth: thus a fill keeps its level
         self._whole = lattice.whole / (1.0 + 0.5 * gravity * case.depth / self.sound**2)
-        self.recovery = 2.0 * water.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
-        self.restitution = water.restitution
+        self.recovery = 2.0 * choice.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
+        self.restitution = choice.restitution
         self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
         self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
-        self.close2 = (water.collision_distance * case.spacing) ** 2
+        self.close2 = (choice.collision_distance * case.spacing) ** 2
 
     def time_step(self, speed, acceleration=0.0):
         """Stable time step, s, at the largest speed, m/s (Mellado 2021, eq. 5.18), and acceleration, m/s2.
