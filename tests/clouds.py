@@ -4,6 +4,7 @@ import numpy as np
 
 from parsim.domain.comm import Comm
 from parsim.domain.domain import Domain
+from parsim.fluid.wcmps.fields import FIELDS
 from parsim.particles.cells import Grid
 from parsim.particles.neighbours import Neighbours
 from parsim.particles.state import FLUID, WALL, Particles, make_id
@@ -47,7 +48,7 @@ def cloud(count, size, seed, walls=0):
     place = rng.uniform(0, 1, (count + walls, 3)) * size
     kind = np.where(np.arange(count + walls) < count, FLUID, WALL)
     ident = np.concatenate([make_id(FLUID, np.arange(count)), make_id(WALL, np.arange(walls))])
-    every = Particles(count + walls, id=ident, kind=kind, x=place[:, 0], y=place[:, 1], z=place[:, 2])
+    every = Particles(count + walls, FIELDS, id=ident, kind=kind, x=place[:, 0], y=place[:, 1], z=place[:, 2])
     for name in ("u", "v", "w"):
         setattr(every, name, rng.normal(size=count + walls))
     every.n[:] = rng.uniform(90, 110, count + walls)
@@ -59,7 +60,7 @@ def listed(every, size, radius, periodic=(False, False, False)):
     """A domain and lists of all particles on one rank."""
     grid = Grid(np.zeros(3), np.asarray(size, float), radius, periodic)
     fluid = every.kind == FLUID
-    domain = Domain(grid, Comm(periodic[0]), [Fixed(every.take(~fluid))])
+    domain = Domain(grid, Comm(periodic[0]), [Fixed(every.take(~fluid))], FIELDS)
     domain.rebuild(every.take(fluid), 0.0)
     near = Neighbours(32)
     near.build(domain, radius)
@@ -75,7 +76,7 @@ def lattice(counts, spacing, jitter=0.0, seed=0):
     size = np.array(counts) * spacing
     place %= size
     count = len(place)
-    every = Particles(count, id=make_id(FLUID, np.arange(count)), kind=FLUID,
+    every = Particles(count, FIELDS, id=make_id(FLUID, np.arange(count)), kind=FLUID,
                       x=place[:, 0], y=place[:, 1], z=place[:, 2])
     return every, size
 

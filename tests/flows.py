@@ -135,7 +135,7 @@ def shear_wave(rows, pressure, along, viscosity=2e-3):
     k = 2.0 * math.pi / length * np.array([along, 1.0])
     way = np.array([1.0, -along]) / math.hypot(1.0, along)
     p, at = fluid(s)
-    p.n[at] = s.scheme.number_at(np.full(at.size, pressure))
+    p.n[at] = s.scheme.at_rest(np.full(at.size, pressure))["n"]
     wave = np.sin(k[0] * p.x + k[1] * p.z)
     p.u[:], p.w[:] = way[0] * wave, way[1] * wave
     s.domain.refresh("n")

@@ -13,10 +13,11 @@ import parsim
 from parsim.__main__ import main
 from parsim.domain.comm import Comm
 from parsim.errors import InputError
+from parsim.fluid.wcmps.fields import FIELDS
 from parsim.launch import stop
 from parsim.machine import variant
 from parsim.output import checkpoint
-from parsim.particles.state import OF_WATER
+from parsim.particles.state import of_water
 from parsim.run.resume import find
 
 CASE = Path(__file__).with_name("survive.toml")
@@ -45,19 +46,20 @@ def finished(tmp_path_factory):
 def test_what_is_written_is_read(written):
     path, snapshot, _ = written
     found = checkpoint.Checkpoint(path)
-    water = found.snapshot(0, 1).water
+    water = found.snapshot(FIELDS, 0, 1).water
     order = np.argsort(snapshot.water.id)
-    for name in OF_WATER:
+    for name in of_water(FIELDS):
         assert np.array_equal(getattr(water, name), getattr(snapshot.water, name)[order]), name
-    for group in ("bodies", "contacts"):
-        for name, values in getattr(snapshot, group).items():
-            assert np.array_equal(getattr(found, group)[name], values), name
+    assert set(found.parts) == {"bodies", "contacts"}
+    for part, kept in snapshot.parts.items():
+        for name, values in kept.items():
+            assert np.array_equal(found.parts[part][name], values), name
     assert found.account == json.loads(json.dumps(snapshot.account))
 
 
 def test_ranks_read_all_of_it_between_them(written):
     path, snapshot, _ = written
-    parts = [checkpoint.Checkpoint(path).snapshot(rank, 3).water for rank in range(3)]
+    parts = [checkpoint.Checkpoint(path).snapshot(FIELDS, rank, 3).water for rank in range(3)]
     assert np.array_equal(np.concatenate([part.id for part in parts]), np.sort(snapshot.water.id))
 
 
@@ -65,12 +67,12 @@ def test_a_restored_simulation_takes_the_same_steps(written):
     from parsim.run.simulation import Simulation
 
     path, _, s = written
-    other = Simulation(s.case, Comm(), checkpoint.Checkpoint(path).snapshot(0, 1))
+    other = Simulation(s.case, Comm(), checkpoint.Checkpoint(path).snapshot(FIELDS, 0, 1))
     for _ in range(30):
         s.step()
         other.step()
     assert (s.time, s.dt, s.speed) == (other.time, other.dt, other.speed)
-    for name in OF_WATER:
+    for name in of_water(FIELDS):
         assert np.array_equal(getattr(s.fluid, name), getattr(other.fluid, name)), name
 
 
@@ -90,8 +92,9 @@ def test_a_flipped_byte_or_a_cut_is_detected_or_harmless(written, tmp_path, seed
     except checkpoint.Broken:
         return
     assert found.account == snapshot.account and at < 512, "a change beyond the text at the beginning went unseen"
-    water = found.snapshot(0, 1).water
-    assert all(np.array_equal(np.sort(getattr(water, n)), np.sort(getattr(snapshot.water, n))) for n in OF_WATER)
+    water = found.snapshot(FIELDS, 0, 1).water
+    pairs = [(getattr(water, name), getattr(snapshot.water, name)) for name in of_water(FIELDS)]
+    assert all(np.array_equal(np.sort(one), np.sort(two)) for one, two in pairs)
 
 
 def test_a_data_set_that_is_not_what_was_given_is_named(written, tmp_path):

@@ -9,8 +9,8 @@ from test_sweeps import continuity, growth_of, sweep
 
 from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import updates
+from parsim.fluid.wcmps.fields import TWICE_VISCOUS, VISCOUS
 from parsim.fluid.weights import WEIGHTS
-from parsim.particles.state import TWICE_VISCOUS, VISCOUS
 
 SPACING = 0.1
 

@@ -7,7 +7,7 @@ from clouds import cloud, lattice, listed
 from parsim.domain.balance import even_cuts, uneven
 from parsim.particles.cells import HALO, LAYERS, REACH, Grid, Stack, occupied, sort_by_cell, sort_key, spread
 from parsim.particles.sight import cut_rows, hidden
-from parsim.particles.state import FLUID, GATE_DOWN, GATE_UP, Particles
+from parsim.particles.state import COMMON, FLUID, GATE_DOWN, GATE_UP, Particles
 from parsim.particles.tables import Lists, Vectors
 
 
@@ -154,6 +154,6 @@ def test_cuts_split_the_work_evenly_and_leave_room_for_halos():
 
 def test_pack_and_unpack_keep_every_kept_field():
     every = cloud(17, np.ones(3), seed=9, walls=3)
-    back = Particles.unpack(every.pack())
+    back = Particles.unpack(every.pack(), every.fields)
     assert all((getattr(back, name) == getattr(every, name)).all() for name in ("id", "kind", "x", "n", "scale"))
-    assert len(Particles.unpack(Particles(0).pack())) == 0
+    assert len(Particles.unpack(Particles(0).pack(), COMMON)) == 0

@@ -7,6 +7,7 @@ from test_sweeps import sweep
 
 from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
+from parsim.fluid.wcmps.fields import NORMAL
 from parsim.fluid.weights import WEIGHTS
 from parsim.particles.state import DETACHED, FLUID, INTERNAL, SURFACE, VICINITY, WALL, make_id
 
@@ -19,7 +20,7 @@ def found(domain, near, scheme):
     p.n[:] = scheme.number
     p.c[:] = sweep(p, near, scheme)
     bounds = surface.Bounds(scheme.spacing, scheme.lowest, scheme.highest)
-    surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.normal)
+    surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
     domain.refresh("surface", "nx", "ny", "nz", "c")
     return domain, near, scheme
 
@@ -29,11 +30,11 @@ def shift(domain, near, scheme, pull=0.1, slope=0.0):
     p = domain.particles
     at = near.fluid
     surface.clamp(at, p.surface, scheme.number, 0.005, p.n)
-    surface.mark(at, near.lists, p.place, scheme.weight, domain.near(SURFACE, "surface"), p.surface, p.normal)
+    surface.mark(at, near.lists, p.place, scheme.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
     recovery.recover(at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), scheme.weight,
                      recovering(scheme, pull), p.n)
     constants = shifting.Shifting(0.004, 0.01, *DOWN, scheme.number * slope)
-    shifting.shift(at, p.surface, p.normal, constants, p.acceleration, p.n)
+    shifting.shift(at, p.surface, p.vectors(NORMAL), constants, p.acceleration, p.n)
 
 
 def recovering(scheme, pull):

@@ -8,8 +8,9 @@ from clouds import PLAIN, cloud, lattice, listed
 
 from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import sweeps, tables, updates
+from parsim.fluid.wcmps.fields import NORMAL, VISCOUS, isotropy
 from parsim.fluid.weights import WEIGHTS
-from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY, VISCOUS
+from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY
 from parsim.particles.tables import Traceless, Vectors
 
 SIZE, RE = np.array([1.3, 0.9, 0.7]), 0.2
@@ -21,7 +22,7 @@ def mixed():
     domain, near = listed(cloud(500, SIZE, seed=4, walls=200), SIZE, RE)
     p, rng = domain.particles, np.random.default_rng(8)
     p.p[:], p.bx[:], p.by[:], p.bz[:] = rng.normal(size=(4, len(p)))
-    for field in p.isotropy:
+    for field in isotropy(p):
         field[near.fluid] = 0.1 * rng.normal(size=near.fluid.size)
     return p, near
 
@@ -34,7 +35,7 @@ def weight(request):
 
 def corrections(p):
     """The corrections of the gradient as matrices (n, 3, 3)."""
-    xx, xy, xz, yz, zz = p.isotropy
+    xx, xy, xz, yz, zz = isotropy(p)
     return np.moveaxis(np.array([[xx, xy, xz], [xy, -xx - zz, yz], [xz, yz, zz]]), 2, 0)
 
 
@@ -81,7 +82,7 @@ def test_momentum_sweep(mixed, weight):
     p.ax[near.boundary] = 3.0
     c, b = np.zeros(len(p)), np.zeros((3, len(p)))
     forces = tables.Forces(own, whole, close**2, push, drag, hit, dt, 1.0)
-    momentum(p, near, WEIGHTS[weight].of_radius(RE), forces, tables.Around(c, p.normal, Vectors(*b)))
+    momentum(p, near, WEIGHTS[weight].of_radius(RE), forces, tables.Around(c, p.vectors(NORMAL), Vectors(*b)))
     struck, t = 0, corrections(p)
     for i in near.fluid[::7]:
         a, normal, viscous, total = np.zeros(3), np.zeros(3), np.zeros(3), own
@@ -202,8 +203,8 @@ def sweep(p, near, scheme):
 
 def momentum(p, near, weight, forces, around=None, lists=None):
     """The momentum sweep over all fluid into the fields of the particles; their concentrations."""
-    around = around or tables.Around(np.zeros(len(p)), p.normal, p.vectors(VISCOUS))
-    sweeps.momentum(near.fluid, lists or near.lists, p.kinematics, tables.Pressures(p.p, p.scale, p.isotropy), weight,
+    around = around or tables.Around(np.zeros(len(p)), p.vectors(NORMAL), p.vectors(VISCOUS))
+    sweeps.momentum(near.fluid, lists or near.lists, p.kinematics, tables.Pressures(p.p, p.scale, isotropy(p)), weight,
                     forces, p.acceleration, around)
     return around.concentration
 
@@ -212,7 +213,7 @@ def reaction(p, near, weight, forces, acceleration, pressure):
     """What the boundary, whose samples have the acceleration (3, particles), gives back to the water."""
     out = tables.Reaction(*(np.empty((near.boundary.size, k)) for k in (3, 3, 6)))
     sweeps.reaction(near.boundary, near.lists, p.kinematics, Vectors(*acceleration),
-                    tables.Pressures(pressure, p.scale, p.isotropy), weight, forces, out)
+                    tables.Pressures(pressure, p.scale, isotropy(p)), weight, forces, out)
     return out
 
 
@@ -237,7 +238,7 @@ def test_pair_forces_add_up_to_nothing(weight):
     domain, near = listed(every, size, 0.31, (True, True, True))
     p, scheme = domain.particles, Lattice(3, 0.1, 3.1, weight)
     p.p[:] = rng.uniform(-1.0, 1.0, len(every))[p.id]
-    for field in p.isotropy:
+    for field in isotropy(p):
         field[:] = rng.uniform(-0.1, 0.1, len(every))[p.id]
     sweep(p, near, scheme)
     for field in (p.ax, p.ay, p.az):

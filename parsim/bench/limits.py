@@ -6,8 +6,9 @@ import numpy as np
 
 from parsim.fluid.wcmps import sweeps as kernels
 from parsim.fluid.wcmps import tables
+from parsim.fluid.wcmps.fields import VISCOUS, isotropy
 from parsim.machine.jit import prange, rows
-from parsim.particles.state import FLUID, VISCOUS
+from parsim.particles.state import FLUID
 from parsim.particles.tables import Traceless, Vectors
 
 
@@ -61,7 +62,7 @@ def sweeps(simulation, calls):
                             float(lattice.dimensions))
 
     def momentum(lists):
-        kernels.momentum(at, lists, p.kinematics, tables.Pressures(p.p, p.scale, p.isotropy), lattice.weight, forces,
+        kernels.momentum(at, lists, p.kinematics, tables.Pressures(p.p, p.scale, isotropy(p)), lattice.weight, forces,
                          one, tables.Around(out[9], two, three))
 
     def continuity(lists):

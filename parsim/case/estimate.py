@@ -7,10 +7,9 @@ import numpy as np
 
 from parsim.geometry import boxes as geometry
 from parsim.geometry.faces import walled_sides
-from parsim.particles.state import FIELDS, WATER_BYTES
+from parsim.particles.state import water_bytes
 
 RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine
-FIELD_BYTES = 2 * sum(np.dtype(field.dtype).itemsize for field in FIELDS)  # twice: sorting writes into new arrays
 LIST_ROOM = 1.2  # bytes of the neighbour rows over those of the full lattice
 _PROBES = 12  # per edge of a body, to see how much of it is in the water
 RANK_BYTES = 300e6  # Python, Numba and its machine code
@@ -46,10 +45,15 @@ def estimate(case):
         body=body,
         gate=gate,
         active=active,
-        bytes=active * (FIELD_BYTES + 4 * LIST_ROOM * _neighbours(case)),
+        bytes=active * (field_bytes(case) + 4 * LIST_ROOM * _neighbours(case)),
         steps=math.ceil((case.run.until - case.start) / dt),
         time_step=dt,
     )
+
+
+def field_bytes(case):
+    """Bytes of the fields of a particle, twice: sorting writes into new arrays."""
+    return 2 * sum(np.dtype(field.dtype).itemsize for field in case.water.scheme.fields)
 
 
 def time_step(case):
@@ -63,7 +67,8 @@ def disk(case, water):
     frames = math.ceil(time / case.output.frames + 2.0) * (_FRAME_BYTES * water + _BODY_BYTES * bodies)
     series = time / case.output.series * (_ROW_BYTES + _BODY_ROW_BYTES * bodies)
     milestones = math.ceil(time / case.output.milestones) if case.output.milestones else 0
-    return frames, series, WATER_BYTES * water * (3.0 + milestones)  # one is written before one is removed
+    checkpoint = water_bytes(case.water.scheme.fields) * water
+    return frames, series, checkpoint * (3.0 + milestones)  # one is written before one is removed
 
 
 def lines(case, ranks):

@@ -32,6 +32,11 @@ class Solids:
         """What gives the domain samples at a rebuild."""
         return [source for source in (self.samples, self._gate_samples, self.walls) if source is not None]
 
+    @property
+    def parts(self):
+        """What a restart needs, by name: objects with `kept` and `restore`."""
+        return {"bodies": self.bodies, "contacts": self.contacts}
+
     def find(self, flow):
         """Note, after a rebuild, which of this rank's particles are near bodies."""
         if len(self.bodies):

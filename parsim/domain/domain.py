@@ -46,7 +46,7 @@ class Slab:
 
 
 class Domain:
-    """One rank's slab.
+    """One rank's slab. `sources` give it samples of what is solid, `fields` are those of its particles.
 
     `particles` holds halos and owned, `own` the slice of owned ones, `stack` the pieces they are stored in, `first` the
     offsets of the cells of all pieces, `border` (owned,) bool those that may see a halo. `uneven` is the largest work
@@ -54,8 +54,8 @@ class Domain:
     `gone` are those that the last rebuild has found outside.
     """
 
-    def __init__(self, grid, comm, sources, timers=None):
-        self.grid, self.comm, self.sources = grid, comm, sources
+    def __init__(self, grid, comm, sources, fields, timers=None):
+        self.grid, self.comm, self.sources, self._fields = grid, comm, sources, fields
         self.timers = timers or Timers()
         self.uneven = 1.0
         self.cuts = even_cuts(np.ones(grid.layers), comm.size)
@@ -189,7 +189,8 @@ class Domain:
             if self.max(float(away.any()))[0] == 0.0:
                 break
             received = self.comm.exchange(fluid.take(leftward).pack(), fluid.take(rightward).pack())
-            fluid = Particles.join([fluid.take(~away), *(Particles.unpack(buffer) for buffer in received)])
+            arrived = (Particles.unpack(buffer, self._fields) for buffer in received)
+            fluid = Particles.join([fluid.take(~away), *arrived])
         return fluid
 
     def _awake(self, fluid):
@@ -243,7 +244,7 @@ class Domain:
         halos = self.comm.exchange(*(
             Particles.join([part.take(shared) for part, shared in zip(parts, side, strict=True)]).pack()
             for side in sides))
-        left, right = (Particles.unpack(buffer) for buffer in halos)
+        left, right = (Particles.unpack(buffer, self._fields) for buffer in halos)
         left_end, right_end = self.comm.rank == 0, self.comm.rank == self.comm.size - 1
         stored = np.concatenate([g.layer(left.x) - g.layers * left_end, layer, g.layer(right.x) + g.layers * right_end])
         self._period_left, self._period_right = -g.period[0] * left_end, g.period[0] * right_end

@@ -42,7 +42,15 @@ class Solids(Protocol):
 
 
 class Scheme(Protocol):
-    """One way to move the water. `step` is one screen and reads like the method."""
+    """One way to move the water. `step` is one screen and reads like the method.
+
+    STATE: names of the fields whose values at the end of a step are needed of the neighbouring slabs.
+    """
+
+    STATE: tuple
+
+    def at_rest(self, pressure):
+        """Fields of water at rest at pressures (n,), Pa: name -> (n,)."""
 
     def time_step(self, speed, acceleration):
         """Stable time step, s, at the largest speed, m/s, and acceleration, m/s2."""

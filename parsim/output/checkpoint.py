@@ -3,7 +3,7 @@
 A file begins with a block of text: what it is, and the length and SHA-256 of all that follows, which are looked at
 before HDF5 is. Every data set has a SHA-256 of its own besides. Water stands in the order of ids, so that a file does
 not show how many ranks have written it. Data sets: `case` (TOML) and `account` (JSON: counters, and what the outputs
-hold so far) as text, `water/`, `bodies/` and `contacts/` with the kept fields.
+hold so far) as text, `water/` with the kept fields, `parts/` with what bodies and others keep, each under its name.
 """
 
 import hashlib
@@ -16,10 +16,10 @@ import numpy as np
 
 from parsim.errors import InputError
 from parsim.output.frames import replacing
-from parsim.particles.state import OF_WATER, WATER_BYTES, Particles
+from parsim.particles.state import Particles, of_water, water_bytes
 
-FOLDER, SUFFIX = "checkpoints", ".h5"
-_KIND = b"parsim checkpoint, format 2\n"
+FOLDER, SUFFIX, _PARTS = "checkpoints", ".h5", "parts"
+_KIND = b"parsim checkpoint, format 3\n"
 _OVERHEAD = 65536  # bytes of a file besides its water, bodies not counted
 _BLOCK = 512  # bytes of the text; what HDF5 calls a user block
 _PIECE = 1 << 22  # bytes hashed at a time
@@ -30,10 +30,10 @@ class Broken(Exception):
 
 
 class Snapshot:
-    """The state of a run on this rank: water (Particles), bodies and contacts (dicts of arrays), account (dict)."""
+    """The state of a run on this rank: water (Particles), parts (by name dicts of arrays), account (dict)."""
 
-    def __init__(self, water, bodies, contacts, account):
-        self.water, self.bodies, self.contacts, self.account = water, bodies, contacts, account
+    def __init__(self, water, parts, account):
+        self.water, self.parts, self.account = water, parts, account
 
 
 def write(path, case, snapshot, comm):
@@ -42,20 +42,20 @@ def write(path, case, snapshot, comm):
     At most one rank's water is in the memory of rank 0 beside its own.
     """
     water = _in_order(snapshot.water, comm)
-    total = int(comm.sum_integers(np.array([len(water)]))[0])
+    total, names = int(comm.sum_integers(np.array([len(water)]))[0]), of_water(water.fields)
     if comm.rank:
-        for name in OF_WATER:
+        for name in names:
             for _ in comm.stream(getattr(water, name)):
                 pass
         return
-    with replacing(path, _OVERHEAD + WATER_BYTES * total) as part:
+    with replacing(path, _OVERHEAD + water_bytes(water.fields) * total) as part:
         with h5py.File(part, "w", userblock_size=_BLOCK) as file:
             _put(file, "case", _bytes(case))
             _put(file, "account", _bytes(json.dumps(snapshot.account)))
-            for group in ("bodies", "contacts"):
-                for name, values in getattr(snapshot, group).items():
-                    _put(file, f"{group}/{name}", values)
-            for name in OF_WATER:
+            for group, kept in snapshot.parts.items():
+                for name, values in kept.items():
+                    _put(file, f"{_PARTS}/{group}/{name}", values)
+            for name in names:
                 _put_parts(file, f"water/{name}", total, comm.stream(getattr(water, name)))
         _seal(part)
 
@@ -69,7 +69,7 @@ def _in_order(water, comm):
     ends = np.searchsorted(water.id, np.arange(comm.size + 1) * beyond // comm.size)
     ends[0], ends[-1] = 0, len(water)
     dealt = comm.deal([water.take(slice(*pair)).pack() for pair in zip(ends[:-1], ends[1:], strict=True)])
-    water = Particles.join([Particles.unpack(buffer) for buffer in dealt])
+    water = Particles.join([Particles.unpack(buffer, water.fields) for buffer in dealt])
     return water.take(np.argsort(water.id))
 
 
@@ -133,7 +133,7 @@ def verify(path):
 
 
 class Checkpoint:
-    """A verified checkpoint, open for reading; attributes path, case (TOML text), account, bodies, contacts.
+    """A verified checkpoint, open for reading; attributes path, case (TOML text), account, parts.
 
     Raises Broken.
     """
@@ -147,17 +147,17 @@ class Checkpoint:
                 file.visititems(_check)
             self.case, account = (file[name][:].tobytes().decode() for name in ("case", "account"))
             self.account = json.loads(account)
-            self.bodies, self.contacts = ({name: data[()] for name, data in file[group].items()}
-                                          for group in ("bodies", "contacts"))
+            self.parts = {part: {name: data[()] for name, data in kept.items()}
+                          for part, kept in file.get(_PARTS, {}).items()}
 
-    def snapshot(self, rank, size):
-        """The share of one of `size` ranks: every rank a run of water by ids, all bodies and contacts."""
+    def snapshot(self, fields, rank, size):
+        """The share of one of `size` ranks: every rank a run of water by ids, with such `fields`, and all parts."""
         with h5py.File(self.path) as file:
             group = file["water"]
             total = len(group["id"])
             rows = slice(total * rank // size, total * (rank + 1) // size)
-            kept = {name: group[name][rows] for name in OF_WATER}
-        return Snapshot(Particles(kept["id"].size, **kept), self.bodies, self.contacts, self.account)
+            kept = {name: group[name][rows] for name in of_water(fields)}
+        return Snapshot(Particles(kept["id"].size, fields, **kept), self.parts, self.account)
 
 
 def _check(name, data):

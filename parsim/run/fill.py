@@ -123,7 +123,7 @@ def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
         place = kept_out(points, mine, disordered(points, mine, number, case.water.disorder, case.axes), case, bodies)
         parts.append(_particles(case, scheme, fill, place, number + mine))
         number += points.size
-    fluid = Particles.join(parts) if parts else Particles()
+    fluid = Particles.join(parts) if parts else Particles(0, case.water.scheme.fields)
     if case.start >= 0.0:
         flow(case, fluid)
     return fluid
@@ -135,8 +135,8 @@ def _particles(case, scheme, fill, points, idents):
         depth = level_over(case.water.fill, fill, points[:, 0], points[:, 1]) - points[:, 2]
     pressure = case.water.density * -case.gravity[2] * depth
     return Particles(
-        len(points), id=make_id(FLUID, idents), kind=FLUID, x=points[:, 0], y=points[:, 1], z=points[:, 2],
-        n=scheme.number_at(pressure),
+        len(points), case.water.scheme.fields, id=make_id(FLUID, idents), kind=FLUID,
+        x=points[:, 0], y=points[:, 1], z=points[:, 2], **scheme.at_rest(pressure),
     )
 
 

@@ -9,7 +9,7 @@ from parsim.errors import WriteError
 from parsim.launch.stop import REASONS
 from parsim.output import checkpoint
 from parsim.output.series import next_multiple
-from parsim.particles.state import WATER_BYTES
+from parsim.particles.state import water_bytes
 
 KEPT = 2  # checkpoints, besides the milestones
 _RESERVE = 2.0  # s before the walltime, besides what a checkpoint has taken
@@ -22,7 +22,7 @@ class Keeper:
     def __init__(self, case, recorder, stop, simulation):
         self.case, self.recorder, self.stop, self.comm = case, recorder, stop, simulation.comm
         self.folder, self.timers, self.last = recorder.out / checkpoint.FOLDER, simulation.timers, None
-        self.bytes = simulation.fluid_count * WATER_BYTES
+        self.bytes = simulation.fluid_count * water_bytes(case.water.scheme.fields)
         self._cost, self._pace = self.bytes / _SPEED, 0.0
         self._looked = self._saved = clock.perf_counter()
         self._milestone = self._next_milestone(simulation.time)

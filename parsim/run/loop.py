@@ -31,7 +31,8 @@ def resume(found, folder, walltime=None):
     folder.comm = comm = _comm(found.case)
     account = snapshot = None
     if found.checkpoint:
-        account, snapshot = found.checkpoint.account, found.checkpoint.snapshot(comm.rank, comm.size)
+        account = found.checkpoint.account
+        snapshot = found.checkpoint.snapshot(found.case.water.scheme.fields, comm.rank, comm.size)
     folder.reopen(found.case, account)
     return _advance(found.case, folder, found.name, walltime, account, snapshot)
 

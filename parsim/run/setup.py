@@ -15,6 +15,6 @@ class Models:
         self.reach = reach_of(case)
         self.scheme = case.water.scheme.scheme(case, timers)
         self.solids = Solids(case, layers_of(case), self.scheme.lattice, timers)
-        self.domain = Domain(grid_of(case), comm, self.solids.sources, timers=timers)
+        self.domain = Domain(grid_of(case), comm, self.solids.sources, case.water.scheme.fields, timers)
         share = (1.0 + case.run.skin / case.water.scheme.support) ** case.dimensions
         self.near = Neighbours(self.scheme.lattice.count * share * _ROOM)

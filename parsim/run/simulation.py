@@ -58,7 +58,7 @@ class Simulation:
         lost, = self.domain.count(self.domain.lost)
         account = {"lost": lost, "uneven": list(self._uneven)}
         account |= {name: getattr(self, name) for name in _COUNTERS}
-        return Snapshot(self.fluid, self.bodies.kept(), self.contacts.kept(), account)
+        return Snapshot(self.fluid, {name: part.kept() for name, part in self.solids.parts.items()}, account)
 
     def _restore(self, snapshot):
         """Go on from a snapshot: the rebuild that the step after it began with is made here."""
@@ -66,8 +66,8 @@ class Simulation:
             setattr(self, name, snapshot.account[name])
         self._uneven = list(snapshot.account["uneven"])
         self.domain.lost = snapshot.account["lost"] if self.comm.rank == 0 else 0
-        self.bodies.restore(snapshot.bodies)
-        self.contacts.restore(snapshot.contacts)
+        for name, part in self.solids.parts.items():
+            part.restore(snapshot.parts[name])
         self.domain.cut_evenly(snapshot.water.x, np.ones(len(snapshot.water)))
         self._rebuild(snapshot.water)
 

@@ -13,8 +13,9 @@ import numpy as np
 from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import sweeps, tables, updates
+from parsim.fluid.wcmps.fields import ISOTROPY, NORMAL, TWICE_VISCOUS, VISCOUS, isotropy
 from parsim.machine.timers import Timers
-from parsim.particles.state import ISOTROPY, NORMAL, SURFACE, TWICE_VISCOUS, VELOCITY, VISCOUS
+from parsim.particles.state import SURFACE, VELOCITY
 from parsim.particles.tables import Vectors
 
 _BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
@@ -68,9 +69,9 @@ class WCMPS:
         """Time, s, in which sound at the largest speed, m/s, passes a spacing."""
         return self.lattice.spacing / (self.sound + speed)
 
-    def number_at(self, pressure):
-        """Number density (n,) at pressures (n,), Pa >= 0: the inverse state."""
-        return self.lattice.number * updates.seventh_roots(pressure / self.stiffness)
+    def at_rest(self, pressure):
+        """Fields of water at rest at pressures (n,), Pa >= 0: its number density, by the inverse state."""
+        return {"n": self.lattice.number * updates.seventh_roots(pressure / self.stiffness)}
 
     def step(self, flow, solids, time, dt):
         """One step: see the module. `STATE` is left to be refreshed."""
@@ -109,10 +110,10 @@ class WCMPS:
         self._momentum(p, near, near.border, dt)
         with self.timers("surface"):
             bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
-            surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.normal)
+            surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
 
     def _momentum(self, p, near, at, dt):
-        forces, around = self._forces(dt), tables.Around(p.c, p.normal, p.vectors(VISCOUS))
+        forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
         with self.timers("momentum"):
             sweeps.momentum(at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration,
                             around)
@@ -160,7 +161,7 @@ class WCMPS:
         slope = tuple(component * self._steepness for component in self._down)
         growth = tables.Growth(lattice.number, self._gradient, spread, *slope,
                                _CROWD / lattice.spacing, _CLOSE * lattice.spacing, float(lattice.dimensions))
-        out = tables.Change(p.rate, _shifts(p), p.vectors(TWICE_VISCOUS), p.isotropy)
+        out = tables.Change(p.rate, _shifts(p), p.vectors(TWICE_VISCOUS), isotropy(p))
         with self.timers("continuity"):
             sweeps.continuity(at, near.lists, p.kinematics, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
                               lattice.weight, growth, out)
@@ -171,12 +172,12 @@ class WCMPS:
         factor = 2.0 * lattice.spacing**2 * dt / self._passage(speed) * mach * self._gradient
         at, lists, place, n0 = near.fluid, near.lists, p.place, lattice.number
         surface.clamp(at, p.surface, n0, self.loosest, p.n)
-        surface.mark(at, lists, place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.normal)
+        surface.mark(at, lists, place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
         pulled = recovery.Recovery(lattice.radius**2, (_BESIDE * lattice.spacing) ** 2, n0, lattice.own,
                                    self._whole, lattice.cut, *self._down, self.recovery * dt)
         recovery.recover(at, lists, place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, p.n)
         shifted = shifting.Shifting(factor, _LONGEST_SHIFT * lattice.spacing, *self._down, n0 * self._steepness)
-        shifting.shift(at, p.surface, p.normal, shifted, _shifts(p), p.n)
+        shifting.shift(at, p.surface, p.vectors(NORMAL), shifted, _shifts(p), p.n)
         updates.displace(at, _shifts(p), place)
 
     @property
@@ -201,7 +202,7 @@ class WCMPS:
 
 
 def _pressures(p):
-    return tables.Pressures(p.p, p.scale, p.isotropy)
+    return tables.Pressures(p.p, p.scale, isotropy(p))
 
 
 def _shifts(p):

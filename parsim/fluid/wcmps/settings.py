@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from parsim.case.types import Real, Share, Switch, Table
+from parsim.fluid.wcmps.fields import FIELDS
 
 
 class Settings(Table):
@@ -26,6 +27,11 @@ class Settings(Table):
     recovery: Share = Field(
         0.1, description="rate at which shifted water takes the density of its arrangement, over 2 sqrt(g / depth)"
     )
+
+    @property
+    def fields(self):
+        """The fields of particles, those of every scheme with them."""
+        return FIELDS
 
     def doubts(self):
         """What is allowed but doubtful, messages: a support with which water at rest does not stay so (2D, 1 s)."""
