@@ -90,6 +90,7 @@ box = {{ min = [0.0, 0.0, 0.0], max = [0.7, 0.15, 0.3], faces = {{ z_max = "open
 gate = {{ min_x = 0.15, max_x = 0.155, bottom = 0.0, speed = 0.4, opens = 0.0 }}
 water = {{ density = 1000.0, fill = [{{ min = [0.0, 0.0, 0.0], max = [0.15, 0.15, 0.15] }}] }}
 run = {{ until = {until} }}
+report = {{ snapshots = [0.4, 0.8, 1.2], places = [0.4, 0.8], alike_until = 1.5 }}
 """
 BODY = """[[bodies]]
 name = "{}"

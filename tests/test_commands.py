@@ -149,7 +149,7 @@ def test_estimate_counts_what_is_built(name):
     case = load(ROOT / "cases" / f"{name}.toml")
     cost, bodies = estimate.estimate(case), from_case(case)
     assert cost.wall == len(Walls(case, 4))
-    assert cost.body == len(BodySamples(case, bodies, 4))
+    assert cost.body == len(BodySamples(case, bodies, 4, None))
     assert cost.water == pytest.approx(len(water(case, bodies, WCMPS(case))), rel=0.03)
 
 

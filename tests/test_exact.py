@@ -3,17 +3,21 @@
 import math
 
 import numpy as np
+import pytest
+from clouds import lattice, listed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from parsim.case.scales import power_of_two
 from parsim.domain import exact
 
 
-def total(values, index=None, rows=1):
+def total(values, index=None, rows=1, unit=1.0):
     limbs = np.zeros((rows, 1, 2), np.int64)
     values = np.asarray(values, float).reshape(-1, 1)
-    good = exact.accumulate(values, np.zeros(len(values), np.int64) if index is None else index, limbs)
-    return exact.value(limbs)[:, 0], good
+    units = np.full((rows, 1), unit)
+    good = exact.accumulate(values, np.zeros(len(values), np.int64) if index is None else index, units, limbs)
+    return exact.value(limbs, units)[:, 0], good
 
 
 @settings(deadline=None)  # the first call compiles
@@ -38,8 +42,8 @@ def test_parts_add_up_like_the_whole():
     values, limbs = rng.normal(size=(999, 1)) * 1e6, np.zeros((3, 1, 2), np.int64)
     for part in range(3):
         chunk = values[part::3]
-        exact.accumulate(chunk, np.full(len(chunk), part), limbs)
-    assert exact.value(limbs.sum(axis=0))[0] == total(values)[0][0]
+        exact.accumulate(chunk, np.full(len(chunk), part), np.ones((3, 1)), limbs)
+    assert exact.value(limbs.sum(axis=0)[None], np.ones((1, 1)))[0, 0] == total(values)[0][0]
 
 
 def test_rows_are_kept_apart():
@@ -52,3 +56,17 @@ def test_what_is_not_finite_or_too_large_is_told():
     assert not total([1.0, math.inf])[1]
     assert not total([2.0**31])[1]
     assert math.isnan(total([2.0**29] * 4096)[0][0])
+
+
+@pytest.mark.parametrize("size", [1e-20, 1e-6, 1e15])
+def test_terms_of_any_size_lose_nothing_in_a_unit_near_them(size):
+    values = np.random.default_rng(1).normal(size=500) * size
+    sums, good = total(values, unit=power_of_two(size))
+    assert good and sums[0] == pytest.approx(math.fsum(values), rel=1e-15, abs=1e-16 * size)
+    assert sums[0] == 2.0**40 * total(2.0**-40 * values, unit=2.0**-40 * power_of_two(size))[0][0]
+
+
+def test_products_are_summed_exactly():
+    domain, _ = listed(*lattice((6, 6, 6), 0.1), 0.25)
+    one = np.array([1e4, 1.0, -1e4])
+    assert domain.dot(one, np.array([1e4, 1e-9, 1e4]), 1.0) == pytest.approx(1e-9, rel=1e-8)

@@ -15,9 +15,12 @@ from matplotlib.image import imread
 import parsim
 from parsim.errors import InputError, WriteError
 from parsim.output import series
-from parsim.report import animation, budgets, measures, painter, pictures, plots, scene, tables
-from parsim.report.build import build, moments
+from parsim.report import animation, measures, painter, pictures, scene
+from parsim.report.build import build, summary
+from parsim.report.measures import moments
 from parsim.report.page import table
+from parsim.report.sections import bodies, front, profiles, published, speed
+from parsim.report.sections.energy import energy_created
 
 VOID = {"meta", "img", "br"}
 
@@ -128,13 +131,13 @@ def test_views_are_right_handed_and_keep_lengths():
 
 
 def test_measures_are_those_of_the_series(run):
-    tracks = measures.body_tracks(run)
+    tracks = bodies.body_tracks(run)
     assert list(tracks) == list(fake_run.NAMES)
-    assert measures.draught(run, "B1", tracks["B1"]) == pytest.approx(0.868 * 0.0195)
-    assert measures.archimedes_draught(run, "B1") == pytest.approx(0.868 * 0.0195)
-    assert measures.at_time(tracks["A2"], "x", 0.5) == pytest.approx(fake_run.poses(0.5)[0][1, 0], abs=1e-4)
-    assert measures.at_time(tracks["A2"], "x", 3.0) is None
-    assert measures.front_arrival(run) == pytest.approx((0.7 - 2 * 0.015 - 0.15) / 1.35, abs=0.02)
+    assert bodies.draught(run, "B1", tracks["B1"]) == pytest.approx(0.868 * 0.0195)
+    assert bodies.archimedes_draught(run, "B1") == pytest.approx(0.868 * 0.0195)
+    assert bodies.at_time(tracks["A2"], "x", 0.5) == pytest.approx(fake_run.poses(0.5)[0][1, 0], abs=1e-4)
+    assert bodies.at_time(tracks["A2"], "x", 3.0) is None
+    assert front.front_arrival(run) == pytest.approx((0.7 - 2 * 0.015 - 0.15) / 1.35, abs=0.02)
     numbers = measures.published(run)
     assert [(number.block, number.quantity) for number in numbers] == [
         ("B1", "max X"), ("", "front arrives at the end wall"), ("A2", "X")]  # fmt: skip
@@ -145,9 +148,9 @@ def test_a_wet_bed_has_no_front_that_arrives(tmp_path):
     wet = parsim.open(fake_run.make(tmp_path / "wet", times=(0.0, 0.4), spacing=0.03))
     path = wet.folder / "series/front.csv"
     titles, rows = path.read_text().splitlines()[:2], path.read_text().splitlines()[2:]
-    assert measures.front_arrival(wet) is not None
+    assert front.front_arrival(wet) is not None
     path.write_text("\n".join([*titles, *(row.rpartition(",")[0] + ",0.69" for row in rows)]) + "\n")
-    assert measures.front_arrival(wet) is None
+    assert front.front_arrival(wet) is None
 
 
 def test_a_tilted_block_reaches_deeper(run):
@@ -155,13 +158,13 @@ def test_a_tilted_block_reaches_deeper(run):
              {"time": 0.0, "x": 0.05, "y": 0.05, "z": 0.15, "q0": np.cos(np.pi / 8), "q1": 0.0, "q2": np.sin(np.pi / 8),
               "q3": 0.0}.items()}  # fmt: skip
     expected = (0.0725 + 0.0195) / 2 * np.sqrt(0.5)
-    assert measures.draught(run, "A1", track) == pytest.approx(expected)
+    assert bodies.draught(run, "A1", track) == pytest.approx(expected)
 
 
 def test_energy_created_takes_work_off():
     energy = {"time": [-1.0, 0.0, 1.0], "total": [9.0, 2.0, 3.0], "work_gate": [5.0, 1.0, 1.5]}
     energy = {name: np.array(values) for name, values in energy.items()}
-    times, created = measures.energy_created(energy)
+    times, created = energy_created(energy)
     np.testing.assert_array_equal(created, [0.0, 0.25])
     np.testing.assert_array_equal(times, [0.0, 1.0])
 
@@ -177,7 +180,7 @@ def test_verdicts():
 def test_the_profile_leaves_splash_out():
     position = np.array([[0.005, 0.0, 0.10], [0.006, 0.0, 0.02], [0.015, 0.0, 0.05], [0.02, 0.0, 0.07]])
     water = {"position": position, "class": np.array([3, 2, 2, 0], np.uint8)}
-    middles, heights = plots.profile(water, 0.01, 0.0, 0.04)
+    middles, heights = profiles.profile(water, 0.01, 0.0, 0.04)
     np.testing.assert_allclose(middles, [0.005, 0.015, 0.025, 0.035])
     np.testing.assert_allclose(heights, [0.025, 0.055, 0.075, np.nan])
 
@@ -186,11 +189,11 @@ def test_the_profile_stops_where_bodies_cover_it(run):
     moment, level = scene.load(run, 0), 0.15
     x = np.arange(0.0005, 0.15, 0.001)
     position = np.stack([x, np.full_like(x, 0.037), np.full_like(x, level - 0.02)], 1)
-    under = plots.covered(position, moment)
+    under = profiles.covered(position, moment)
     covers = (np.abs(x - 0.038) < 0.0725 / 2) | (np.abs(x - 0.112) < 0.0725 / 2)
     assert (under == covers).all() and 0 < under.sum() < len(x)
-    assert not plots.covered(position + [0.0, 0.0, 0.05], moment).any(), "water on top of a body is a surface"
-    middles, heights = plots.profile({"position": position, "class": np.zeros(len(x))}, 0.001, 0.0, 0.15, under)
+    assert not profiles.covered(position + [0.0, 0.0, 0.05], moment).any(), "water on top of a body is a surface"
+    middles, heights = profiles.profile({"position": position, "class": np.zeros(len(x))}, 0.001, 0.0, 0.15, under)
     assert (np.isnan(heights) == covers).all()
 
 
@@ -202,15 +205,15 @@ def test_small_shares_have_digits(tmp_path):
         for step, value in enumerate(values):
             table.row(step, float(step), value)
         table.close()
-    energy, volume = tables.summary(parsim.open(tmp_path))[1:]
+    energy, volume = summary(parsim.open(tmp_path))[1:]
     assert "at most: 3e-05 % of" in energy and "within 4e-06 % of" in volume
 
 
 def test_nothing_is_said_of_times_after_the_end(run, tmp_path):
-    words = tables.compared(run)
+    words = published.compared(run) + bodies.told(run)
     assert "largest X to 1.1 s (m)" in words and "max X (here to 1.1 s)" in words and "1.5 s (m)" not in words
     long = parsim.open(fake_run.make(tmp_path / "long", times=(0.0, 1.6), spacing=0.03))
-    assert "largest X to 1.5 s (m)" in tables.compared(long) and "here to" not in tables.compared(long)
+    assert "largest X to 1.5 s (m)" in bodies.told(long) and "here to" not in published.compared(long)
 
 
 def test_moments_are_reached_ones():
@@ -255,4 +258,4 @@ def test_bad_folders_and_full_ones(tmp_path, run):
 def test_words_are_escaped_and_empty_tables_left_out(run):
     assert table(("a",), []) == ""
     assert "&lt;script&gt;" in table(("a", "b"), [("<script>", 1.0)])
-    assert budgets.phases(run) is not None
+    assert speed.phases(run) is not None

@@ -177,6 +177,17 @@ class Output(Table):
     )
 
 
+class Report(Table):
+    """What the page of a run shows; without times the thirds of the run."""
+
+    snapshots: tuple[Number, ...] = Field((), description="times of the pictures, s")
+    profiles: tuple[Number, ...] = Field((), description="times of the water's profiles, s")
+    places: tuple[Number, ...] = Field((), description="times at which the places of the bodies are told, s")
+    alike_until: Positive | None = Field(
+        None, description="time until which repeated experiments are alike, s; left out: the end of the run"
+    )
+
+
 class Case(Table):
     """A complete case."""
 
@@ -191,6 +202,7 @@ class Case(Table):
     contacts: Contacts = Field(Contacts(), description="how bodies touch")
     run: Run = Field(description="how long and in what steps")
     output: Output = Field(Output(), description="what is written, and when")
+    report: Report = Field(Report(), description="what the page of the run shows")
     materials: dict[Name, Material] = Field({}, description="materials by name")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies")
 

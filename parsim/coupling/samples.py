@@ -31,21 +31,23 @@ class BodySamples:
     """Even samplings of all bodies at about the spacing, down to a support below their surface.
 
     Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
-    the pose, never integrated. `here` (samples,): which lay in this slab when it was last asked for.
+    the pose, never integrated. `here` (samples,): which lay in this slab when it was last asked for. `units` (8, 6) are
+    those of the sums in `loads`, by their rows for one body: see `Domain.sum`.
     """
 
-    def __init__(self, case, bodies, layers):
+    def __init__(self, case, bodies, layers, units):
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
         self._spacing, self._planar = case.spacing, case.dimensions == 2
         self._axes, self._way_out = np.array(case.axes), _WAY_OUT * case.spacing / case.speed
-        offsets, scales, owners = [], [], []
+        self._units = units
+        offsets, shares, owners = [], [], []
         for b, half in enumerate(bodies.half):
             grid, share = self._grid(half, case.spacing * layers)
             offsets.append(grid)
-            scales.append(np.full(len(grid), share))
+            shares.append(np.full(len(grid), share))
             owners.append(np.full(len(grid), b, np.int32))
         self.offsets = np.concatenate([np.zeros((0, 3)), *offsets])
-        self.scale = np.concatenate([np.zeros(0), *scales])
+        self.scale = np.concatenate([np.zeros(0), *shares])
         self.body = np.concatenate([np.zeros(0, np.int32), *owners])
 
     def _grid(self, half, depth):
@@ -106,7 +108,8 @@ class BodySamples:
         body = p.body[at].astype(np.int64)
         rows = np.concatenate([body, rows, *(body + k * count for k in range(4, 8))])
         values = np.concatenate([each, others, *np.split(added, 4, axis=1)])
-        load, *rims, a, b, c, d = np.split(domain.sum(values, rows, 8 * count), 8)
+        units = np.repeat(self._units, count, axis=0)
+        load, *rims, a, b, c, d = np.split(domain.sum(values, units, rows, 8 * count), 8)
         return load, rims, np.concatenate([a, b, c, d], axis=1)
 
     def answer(self, p, near, position, quaternion, load, added, lever, time):

@@ -4,6 +4,7 @@ import numpy as np
 
 from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall import Walls
+from parsim.case.scales import scales
 from parsim.coupling.films import Films
 from parsim.coupling.samples import BodySamples
 from parsim.solid.bodies import from_case
@@ -17,10 +18,10 @@ class Solids:
     """
 
     def __init__(self, case, layers, lattice, timers):
-        self.timers = timers
+        self.timers, self._scales = timers, scales(case)
         self.bodies = from_case(case)
         self.contacts = Contacts(self.bodies, case)
-        self.samples = BodySamples(case, self.bodies, layers)
+        self.samples = BodySamples(case, self.bodies, layers, _units(self._scales, case.dimensions))
         self.films = Films(case, self.bodies, self.samples, lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
@@ -67,7 +68,7 @@ class Solids:
 
     def drive(self, flow, reaction, time, dt):
         """Account for the work that the gate does on the water, whose `reaction` on `near.gate` it is, in `dt`, s."""
-        force, = flow.domain.sum(reaction[0][:, 2:])
+        force, = flow.domain.sum(reaction[0][:, 2:], self._scales.force)
         self.contacts.gate_work -= float(force) * self.gate.velocity(time) * dt
 
     def advance(self, flow, time, dt):
@@ -87,3 +88,13 @@ class Solids:
             self._gate_samples.place(p, time)
         if len(self.bodies):
             self.samples.place(p, position, quaternion)
+
+
+def _units(scale, dimensions):
+    """Units (8, 6) of the sums in `BodySamples.loads`, by their rows for one body: see `Domain.sum`."""
+    units = np.ones((8, 6))
+    units[0] = scale.force * np.repeat([1.0, scale.length], 3)
+    units[3, 0] = scale.pressure(dimensions)
+    arms = np.repeat([1.0, scale.length], 3)
+    units[4:].flat[:21] = (scale.mass * arms[:, None] * arms)[np.triu_indices(6)]
+    return units

@@ -11,38 +11,13 @@ import numpy as np
 
 from parsim.domain import exact
 from parsim.domain.balance import accumulate, even_cuts, uneven
+from parsim.domain.slab import Slab
 from parsim.machine.jit import kernel
 from parsim.machine.timers import Timers
 from parsim.particles.cells import HALO, LAYERS, REACH, Stack, holding, occupied, sort_by_cell, sort_key, spread
 from parsim.particles.state import POSITION, Particles
 
 _UNEVEN = 1.005  # largest work of a rank over the mean that leaves the cuts alone
-
-
-class Slab:
-    """Layers `begin` to `end` and which of their cells water can reach: what a source of samples needs to know."""
-
-    def __init__(self, grid, begin, end, marks):
-        self.begin, self.end = begin, end
-        self._grid, self._marks = grid, marks
-
-    def cells(self, x, y, z):
-        """Cell of each point (n,) within the slab, -1 for points of other slabs."""
-        layer = self._grid.layer(x)
-        cell = self._grid.cell(layer // LAYERS - self.begin // LAYERS, y, z)
-        return np.where((layer >= self.begin) & (layer < self.end), cell, -1)
-
-    def beside_period(self, *points):
-        """Which of the points, x, y, z (n,) each, lie within a halo of a periodic side: bool (n,)."""
-        g, found = self._grid, np.zeros(points[0].size, bool)
-        for axis in np.flatnonzero(g.periodic):
-            inside = np.minimum(points[axis] - g.low[axis], g.high[axis] - points[axis])
-            found |= inside < REACH * g.edge[axis]
-        return found
-
-    def awake(self, cells):
-        """Which of `cells` (n,) are in the slab and within reach of water: bool (n,)."""
-        return (cells >= 0) & (self._marks[cells] == 1)
 
 
 class Domain:
@@ -118,16 +93,26 @@ class Domain:
         marks = spread(columns, REACH)[self.stack.column].ravel()
         return np.repeat(marks.view(bool), np.diff(self.first))
 
-    def sum(self, values, index=None, count=1):
-        """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,)."""
+    def sum(self, values, units, index=None, count=1):
+        """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,).
+
+        `units`, one or as many as sums: powers of two, the same on all ranks. Nothing is lost down to 1e-18 of them;
+        terms up to 1e9 and sums up to 1e12 of them fit: beyond that, and where there is no number, all are nan.
+        """
         values = np.ascontiguousarray(values, float)
         rows = np.zeros(len(values), np.int64) if index is None else index
         limbs = np.zeros((count, values.shape[1], 2), np.int64)
-        good = exact.accumulate(values, rows, limbs)
-        total = exact.value(self.comm.sum_integers(limbs))
-        if not good:
+        units = np.array(np.broadcast_to(units, limbs.shape[:2]), float, order="C")
+        good = exact.accumulate(values, rows, units, limbs)
+        *sums, bad = self.comm.sum_integers(np.append(limbs.ravel(), not good))
+        total = exact.value(np.reshape(sums, limbs.shape), units)
+        if bad:
             total[:] = np.nan
         return total[0] if index is None else total
+
+    def dot(self, one, two, unit):
+        """Exact sum over all ranks of the products of one (n,) and two (n,), in `unit`: see `sum`."""
+        return float(self.sum((one * two)[:, None], unit)[0])
 
     def count(self, *numbers):
         """Sums over all ranks of whole numbers."""

@@ -31,8 +31,8 @@ class Counts:
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
         every = fluid + len(s.solids.walls) + len(s.solids.samples)
         lattice = s.scheme.lattice
-        volume, = s.domain.sum((1.0 / (p.n[at] / lattice.number))[:, None]) * lattice.volume  # of m / rho, not of N
-        return [[fluid, s.active, every, *rest, float(volume), int(s.bodies.gone.sum())]]
+        full, = s.domain.sum((1.0 / (p.n[at] / lattice.number))[:, None], 1.0)  # of m / rho, not of N
+        return [[fluid, s.active, every, *rest, float(full) * lattice.volume, int(s.bodies.gone.sum())]]
 
 
 @kernel

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from parsim.case.scales import scales
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 
@@ -16,7 +17,7 @@ class Energy:
                       potential_bodies="J", elastic_contacts="J", work_gate="J", dissipated_contacts="J", total="J")
 
     def __init__(self, case):
-        self._gravity = case.gravity
+        self._gravity, self._unit = case.gravity, scales(case).energy
 
     def rows(self, s):
         """See `Observer`."""
@@ -24,7 +25,7 @@ class Energy:
         constants = s.scheme.mass, s.scheme.lattice.number, s.scheme.sound**2
         energies(at, p.kinematics, p.n, constants, self._gravity, out)
         b, c = s.bodies, s.contacts
-        parts = [*map(float, s.domain.sum(out)), b.kinetic_energy(), b.potential_energy(self._gravity),
+        parts = [*map(float, s.domain.sum(out, self._unit)), b.kinetic_energy(), b.potential_energy(self._gravity),
                  c.elastic_energy()]
         return [[s.dt, *parts, c.gate_work, c.dissipated, sum(parts)]]
 

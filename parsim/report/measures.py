@@ -1,12 +1,12 @@
-"""Numbers out of the series, and the published ones they are held against."""
+"""What several sections need of a run: columns of its series, what its case wants told, and published numbers."""
 
 import csv
 from dataclasses import dataclass
 
-import numpy as np
 
-ALIKE_UNTIL = 1.5  # s; repeated experiments part ways after it (Amaro et al. 2021, section 4)
-LEVELS = (0.4, 0.8, 1.2)  # s, when the blocks' places are told
+def asked(run, key, default=None):
+    """What the case of a run says under `report`, the default where it says nothing."""
+    return run.case.get("report", {}).get(key) or default
 
 
 def columns(run, name):
@@ -17,84 +17,19 @@ def columns(run, name):
     return series if len(series["step"]) else None
 
 
-def body_tracks(run):
-    """Body name -> its rows of bodies.csv as a dict of columns, in the order of the case."""
-    series = columns(run, "bodies")
-    if series is None:
-        return {}
-    written = set(series["body"].tolist())
-    return {
-        name: {key: values[series["body"] == name] for key, values in series.items()}
-        for name in run.body_names if name in written
-    }  # fmt: skip
+def percent(share):
+    """A share with as many digits as show it."""
+    return f"{100 * share:.2g} %"
 
 
-def front_arrival(run):
-    """Time (s) at which the front comes within two spacings of the downstream end, None if it does not or is there."""
-    front = columns(run, "front")
-    if front is None:
-        return None
-    later = front["time"] >= 0
-    there = front["x"][later] >= run.case["box"]["max"][0] - 2 * run.case["spacing"]
-    return float(front["time"][later][there.argmax()]) if there.any() and not there[0] else None
-
-
-def energy_created(energy):
-    """(E - E0 - work done from outside) / E0 at each time from t = 0 on: (times, share)."""
-    later = energy["time"] >= 0
-    work = sum((values[later] for name, values in energy.items() if name.startswith("work")), np.zeros(later.sum()))
-    total = energy["total"][later]
-    if not len(total) or total[0] == 0:
-        return energy["time"][later], np.zeros_like(total)
-    return energy["time"][later], (total - total[0] - (work - work[0])) / total[0]
-
-
-def compared_until(run):
-    """The end (s) of what is held against experiments: they repeat until 1.5 s, and the run may end before."""
-    series = columns(run, "bodies")
-    return ALIKE_UNTIL if series is None else min(ALIKE_UNTIL, float(series["time"][-1]))
-
-
-def largest_x(track):
-    """The largest x (m) of a body's centre while experiments repeat, and when (s); None before t = 0."""
-    some = np.flatnonzero((track["time"] >= 0) & (track["time"] <= ALIKE_UNTIL))
-    if not len(some):
-        return None
-    best = some[np.argmax(track["x"][some])]
-    return float(track["x"][best]), float(track["time"][best])
-
-
-def at_time(track, key, time):
-    """The value of a column at ``time`` (s), None outside the track."""
-    times = track["time"]
-    if not len(times) or not times[0] <= time <= times[-1]:
-        return None
-    return float(np.interp(time, times, track[key]))
-
-
-def draught(run, name, track):
-    """How deep (m) a body sits at the last row with t <= 0: fill level over it minus its lowest corner, or None."""
-    before = np.flatnonzero(track["time"] <= 0)
-    if not len(before):
-        return None
-    row, body = before[-1], run.case["bodies"][run.body_names.index(name)]
-    x, y = track["x"][row], track["y"][row]
-    levels = [fill["max"][2] for fill in run.case["water"].get("fill", [])
-              if fill["min"][0] <= x <= fill["max"][0] and fill["min"][1] <= y <= fill["max"][1]]  # fmt: skip
-    w, a, b, c = (track[f"q{i}"][row] for i in range(4))
-    # the third row of the rotation matrix: how far each half size reaches down
-    reach = np.abs([2 * (a * c - w * b), 2 * (b * c + w * a), 1 - 2 * (a * a + b * b)])
-    lowest = track["z"][row] - np.dot(reach, body["shape"]["size"]) / 2
-    return float(max(levels) - lowest) if levels else None
-
-
-def archimedes_draught(run, name):
-    """The draught (m) of a level box at rest: its density over the water's, times its height; None if it would sink."""
-    body = run.case["bodies"][run.body_names.index(name)]
-    size = np.array(body["shape"]["size"])
-    density = body.get("density") or body["mass"] / np.prod(size)
-    share = density / run.case["water"].get("density", 1000.0)
-    return float(share * size[2]) if share < 1 else None
+def moments(times, wanted):
+    """Frames nearest to the ``wanted`` times that the run has reached; the thirds of the run if there are none."""
+    if not len(times):
+        return []
+    slack = (times[-1] - times[0]) / max(len(times) - 1, 1) / 2
+    reached = [time for time in wanted if time <= times[-1] + slack + 1e-9]
+    reached = reached or [times[-1] * share for share in (1 / 3, 2 / 3, 1)]
+    return sorted({int(abs(times - time).argmin()) for time in reached})
 
 
 @dataclass(frozen=True)
@@ -124,21 +59,6 @@ def published(run):
                   **{key: float(row[key]) if row[key] else None for key in numbers})
         for row in rows if row["case"] == run.info.get("case_name")
     ]  # fmt: skip
-
-
-def measured(run, number):
-    """What this run has for a published number, None when it has nothing comparable."""
-    if number.quantity.startswith("front"):
-        return front_arrival(run)
-    track = body_tracks(run).get(number.block)
-    if track is None:
-        return None
-    if number.quantity.startswith("max X"):
-        best = largest_x(track)
-        return best[0] if best else None
-    if number.quantity == "X" and number.time is not None:
-        return at_time(track, "x", number.time)
-    return None
 
 
 def verdict(value, number):

@@ -163,7 +163,7 @@ def _table(bodies, cell, case, gate):
     out = np.zeros((count + 1, table.WIDTH))
     for at, values in ((table.HALF, bodies.half), (table.INERTIA, bodies.inertia), (table.CELL, cell)):
         out[:count, at : at + 3] = values
-    out[:count, table.MATERIAL] = bodies.material
+    out[:count, table.MATERIAL], out[:count, table.RADIUS] = bodies.material, bodies.radius
     out[count, table.MATERIAL] = list(case.materials).index(case.wall_material) if case.materials else 0
     far = _FAR * max(high - low for low, high in zip(case.box.min, case.box.max, strict=True))
     out[count, table.HALF : table.HALF + 3] = far

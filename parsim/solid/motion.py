@@ -11,7 +11,6 @@ from parsim.machine.jit import kernel
 from parsim.solid.table import (
     ALONE,
     GIVEN,
-    HALF,
     HELD,
     INERTIA,
     INVERSE,
@@ -23,6 +22,7 @@ from parsim.solid.table import (
     MOMENTUM,
     POSITION,
     QUATERNION,
+    RADIUS,
     ROLE,
     SPIN,
     TOTAL,
@@ -188,10 +188,10 @@ def speed_of(m, b, dt):
     """Bound of the speed of any point of body `b` (or the gate) within `dt`, s, without contacts, m/s."""
     if b == len(m) - 1:
         return length(three(m, b, VELOCITY))
-    inverse, radius = three(m, b, INVERSE), length(three(m, b, HALF))
+    inverse = three(m, b, INVERSE)
     faster = dt * length(three(m, b, GIVEN + 3)) * max(inverse[0], inverse[1], inverse[2])
     spin = length(three(m, b, SPIN)) + faster
-    return length(three(m, b, VELOCITY)) + dt * length(three(m, b, GIVEN)) * m[b, LIGHT] + radius * spin
+    return length(three(m, b, VELOCITY)) + dt * length(three(m, b, GIVEN)) * m[b, LIGHT] + m[b, RADIUS] * spin
 
 
 @kernel

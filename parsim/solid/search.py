@@ -25,6 +25,7 @@ from parsim.solid.table import ALONE, HALF, HELD, INVOLVED, POSITION, ROLE, TURN
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
 DEPTH, AREA, POINT, STRETCH = 0, 1, 2, 5
+_ROUNDING = 1e-9  # of the widest body
 _MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
@@ -70,8 +71,8 @@ def near_pairs(m, touch, period, planar, gate, dt, place, order):
     """
     walls = touch.walls
     count, number = len(m) - 1, 0
-    reach = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + 1e-9
     extent, widest = _extents(m, count)
+    reach = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
     near = Reach(period, extent, reach, planar)
     for row in range(count):
         for step in range(1, count):

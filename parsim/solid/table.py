@@ -13,7 +13,8 @@ HALF, CELL = 49, 52  # half edges; distances of contact elements
 INERTIA, INVERSE, LIGHT = 55, 58, 61  # principal moments; 1 / moments; 1 / mass; the inverses 0 for what is held
 ROLE, MATERIAL = 62, 63
 MEAN = 64  # of velocity and spin before and after a kick
-WIDTH = 70
+RADIUS = 70  # of the ball around it, in a plane of the disc
+WIDTH = 71
 
 HELD, ALONE, INVOLVED = 0, 1, 2  # roles: does not move; touches nothing in this step; may touch
 

@@ -1,0 +1,22 @@
+"""The sections of the page: what exists is listed here, in their order.
+
+A section is one file: `parts(page)` gives its HTML; `lines(run)`, where it has something to say in the summary, and
+`QUANTITIES`, what of a run answers to the published numbers of that name.
+"""
+
+from parsim.report.sections import (
+    about,
+    bodies,
+    counts,
+    energy,
+    front,
+    gauges,
+    loads,
+    outcome,
+    pictures,
+    profiles,
+    published,
+    speed,
+)
+
+SECTIONS = (outcome, published, pictures, bodies, profiles, front, energy, counts, gauges, loads, speed, about)

@@ -1,0 +1,139 @@
+"""Where the bodies go and how deep they sit: their curves, their table, the numbers published of them."""
+
+import numpy as np
+
+from parsim.report.curves import INK, LINES, figure, name_ends
+from parsim.report.measures import asked, columns, published
+from parsim.report.page import section, table
+from parsim.report.scene import body_colours
+
+
+def parts(page):
+    """The curves; the table stands with what is published."""
+    return section("Trajectories of the bodies", page.figure(
+        "trajectories", trajectories(page.run), "Curves of x and z of each body's centre over time.",
+        "X is the position of a block's centre, not its displacement. Squares with bars: the experiments' spread "
+        "at the quoted time; crosses: the published model."))  # fmt: skip
+
+
+def body_tracks(run):
+    """Body name -> its rows of bodies.csv as a dict of columns, in the order of the case."""
+    series = columns(run, "bodies")
+    if series is None:
+        return {}
+    written = set(series["body"].tolist())
+    return {
+        name: {key: values[series["body"] == name] for key, values in series.items()}
+        for name in run.body_names if name in written
+    }  # fmt: skip
+
+
+def compared_until(run):
+    """The end (s) of what is held against experiments: `report.alike_until`, or the run ends before."""
+    series, alike = columns(run, "bodies"), asked(run, "alike_until", np.inf)
+    return alike if series is None else min(alike, float(series["time"][-1]))
+
+
+def largest_x(run, track):
+    """The largest x (m) of a body's centre while experiments repeat, and when (s); None before t = 0."""
+    some = np.flatnonzero((track["time"] >= 0) & (track["time"] <= compared_until(run)))
+    if not len(some):
+        return None
+    best = some[np.argmax(track["x"][some])]
+    return float(track["x"][best]), float(track["time"][best])
+
+
+def at_time(track, key, time):
+    """The value of a column at ``time`` (s), None outside the track."""
+    times = track["time"]
+    if not len(times) or not times[0] <= time <= times[-1]:
+        return None
+    return float(np.interp(time, times, track[key]))
+
+
+def draught(run, name, track):
+    """How deep (m) a body sits at the last row with t <= 0: fill level over it minus its lowest corner, or None."""
+    before = np.flatnonzero(track["time"] <= 0)
+    if not len(before):
+        return None
+    row, body = before[-1], run.case["bodies"][run.body_names.index(name)]
+    x, y = track["x"][row], track["y"][row]
+    levels = [fill["max"][2] for fill in run.case["water"].get("fill", [])
+              if fill["min"][0] <= x <= fill["max"][0] and fill["min"][1] <= y <= fill["max"][1]]  # fmt: skip
+    w, a, b, c = (track[f"q{i}"][row] for i in range(4))
+    # the third row of the rotation matrix: how far each half size reaches down
+    reach = np.abs([2 * (a * c - w * b), 2 * (b * c + w * a), 1 - 2 * (a * a + b * b)])
+    lowest = track["z"][row] - np.dot(reach, body["shape"]["size"]) / 2
+    return float(max(levels) - lowest) if levels else None
+
+
+def archimedes_draught(run, name):
+    """The draught (m) of a level box at rest: its density over the water's, times its height; None if it would sink."""
+    body = run.case["bodies"][run.body_names.index(name)]
+    size = np.array(body["shape"]["size"])
+    density = body.get("density") or body["mass"] / np.prod(size)
+    share = density / run.case["water"].get("density", 1000.0)
+    return float(share * size[2]) if share < 1 else None
+
+
+def told(run):
+    """A table with a row for each body: draught, places at `report.places`, largest x."""
+    rows, times, end = [], asked(run, "places", ()), compared_until(run)
+    for name, track in body_tracks(run).items():
+        places = [at_time(track, "x", time) for time in times]
+        best = largest_x(run, track) or (None, None)
+        rows.append((name, draught(run, name, track), archimedes_draught(run, name), *places, *best))
+    titles = ("body", "draught before release (m)", "by Archimedes (m)", *(f"X at {time:g} s (m)" for time in times),
+              f"largest X to {end:.3g} s (m)", "when (s)")  # fmt: skip
+    return table(titles, rows)
+
+
+def trajectories(run):
+    """x and z of each body's centre over time, with the published largest x."""
+    tracks = body_tracks(run)
+    if not tracks:
+        return None
+    drawn, axes = figure(1, 2, 4.2)
+    colours = dict(zip(tracks, body_colours(len(tracks)), strict=True))
+    for each, key in zip(axes[0], "xz", strict=True):
+        ends = []
+        for number, (name, track) in enumerate(tracks.items()):
+            each.plot(track["time"], track[key], LINES[number % 4], color=colours[name], linewidth=1.8)
+            ends.append((name, track["time"][-1], track[key][-1], colours[name]))
+        name_ends(each, ends)
+        each.set_xlabel("time (s)")
+        each.set_ylabel(f"{key.upper()} of the centre (m)")
+    _published_x(axes[0, 0], run, colours)
+    return drawn
+
+
+def _published_x(axes, run, colours):
+    """The experiments' spread as a bar at the quoted time, the published model as a cross."""
+    for number in published(run):
+        if number.block not in colours or number.time is None:
+            continue
+        style = {"color": colours[number.block], "zorder": 5}
+        if number.low is not None and number.high is not None:
+            middle, half = (number.low + number.high) / 2, (number.high - number.low) / 2
+            label = f"{number.block} {number.quantity}, experiments"
+            axes.errorbar(number.time, middle, half, fmt="s", capsize=6, elinewidth=4, markersize=6,
+                          markeredgecolor=INK, label=label, **style)  # fmt: skip
+        if number.model is not None:
+            label = f"{number.block} {number.quantity}, published model"
+            axes.plot(number.time, number.model, "X", markersize=9, markeredgecolor=INK, label=label, **style)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(fontsize=7, frameon=False, loc="upper left")
+
+
+def _largest(run, number):
+    track = body_tracks(run).get(number.block)
+    best = None if track is None else largest_x(run, track)
+    return best and best[0]
+
+
+def _place(run, number):
+    track = body_tracks(run).get(number.block)
+    return None if track is None or number.time is None else at_time(track, "x", number.time)
+
+
+QUANTITIES = {"max X": _largest, "X": _place}

@@ -1,0 +1,45 @@
+"""The volume of the water, and particles where none may be."""
+
+import numpy as np
+
+from parsim.report.curves import WATER, figure
+from parsim.report.measures import columns, percent
+from parsim.report.page import section
+
+LEAKS = ("in_walls", "in_bodies", "in_gate", "lost")
+
+
+def parts(page):
+    """Their curves."""
+    return section("Volume and particles", page.figure(
+        "volume", volume(page.run), "Curves of the water's volume and of misplaced particles.",
+        "Volume against its first value; particles found in walls, bodies or gate, and lost: all should stay 0."))
+
+
+def lines(run):
+    """Drift and leaks, for the summary."""
+    counts = columns(run, "counts")
+    if counts is None:
+        return []
+    drift = np.max(np.abs(counts["volume"] / counts["volume"][0] - 1))
+    leaks = [f"{counts[name].max()} {name.replace('_', ' ')}" for name in LEAKS if name in counts]
+    return [f"Volume within {percent(drift)} of its first value; particles at most " + ", ".join(leaks) + "."]
+
+
+def volume(run):
+    """The water's volume against its first value, and the counts of particles where none may be."""
+    series = columns(run, "counts")
+    if series is None:
+        return None
+    drawn, axes = figure(1, 2, 3.0)
+    first = series["volume"][0]
+    axes[0, 0].plot(series["time"], 100 * (series["volume"] / first - 1), color=WATER, linewidth=1.6)
+    axes[0, 0].set_ylabel(f"volume (%, against {first * 1e3:.4g} l)")
+    for name in LEAKS:
+        if name in series:
+            axes[0, 1].step(series["time"], series[name], where="post", label=name.replace("_", " "), linewidth=1.4)
+    axes[0, 1].set_ylabel("particles")
+    axes[0, 1].legend(fontsize=8, frameon=False)
+    for each in axes[0]:
+        each.set_xlabel("time (s)")
+    return drawn

@@ -1,0 +1,32 @@
+"""What acts on the bodies."""
+
+from parsim.report.curves import ACCENT, FAINT, WATER, figure
+from parsim.report.measures import columns
+from parsim.report.page import section
+
+
+def parts(page):
+    """Its curves."""
+    return section("Loads on the bodies", page.figure(
+        "loads", loads(page.run), "Curves of forces on each body.",
+        "Forces along the flow (fx) and upward (fz), as means over a step."))
+
+
+def loads(run):
+    """Forces along x and z on each body, by kind."""
+    series = columns(run, "loads")
+    if series is None:
+        return None
+    names = list(dict.fromkeys(series["body"].tolist()))
+    drawn, axes = figure(len(names), 2, 1.7, sharex=True)
+    colours = {"water": WATER, "contact": ACCENT, "gravity": FAINT}
+    for row, name in zip(axes, names, strict=True):
+        for each, force in zip(row, ("fx", "fz"), strict=True):
+            for kind, colour in colours.items():
+                here = (series["body"] == name) & (series["kind"] == kind)
+                each.plot(series["time"][here], series[force][here], color=colour, linewidth=1.1, label=kind)
+            each.set_ylabel(f"{name} {force} (N)", fontsize=8)
+    axes[0, 0].legend(fontsize=7, frameon=False, ncols=3)
+    for each in axes[-1]:
+        each.set_xlabel("time (s)")
+    return drawn

@@ -1,0 +1,22 @@
+"""How the run went, in words."""
+
+from parsim.report.page import listing, section
+
+
+def parts(page):
+    """Its warnings."""
+    return section("Warnings", listing(page.run.info.get("warnings", []), "warnings") or "<p>None.</p>")
+
+
+def lines(run):
+    """Status, size and time."""
+    info = run.info
+    told = [f"Status: {info.get('status', 'unknown')}."]
+    if "steps" in info and "time" in info:
+        told.append(f"Simulated to {info['time']:.4g} s in {info['steps']} steps: {info.get('wall_s', 0):.4g} s of "
+                    f"wall time on {info.get('ranks', '?')} ranks x {info.get('threads', '?')} threads.")  # fmt: skip
+    if particles := info.get("particles"):
+        told.append("Particles: " + ", ".join(f"{count} {kind}" for kind, count in particles.items()) + ".")
+    if info.get("warnings"):
+        told.append(f"Warnings: {len(info['warnings'])}.")
+    return told

@@ -1,0 +1,31 @@
+"""What is measured here beside what is published."""
+
+from parsim.report import measures
+from parsim.report.page import section, table
+from parsim.report.sections import bodies, front
+
+QUANTITIES = front.QUANTITIES | bodies.QUANTITIES  # by their name in reference.csv
+
+
+def parts(page):
+    """The table of what is published, and that of the bodies."""
+    return section("Here and published", compared(page.run), bodies.told(page.run))
+
+
+def measured(run, number):
+    """What this run has for a published number, None when it has nothing comparable."""
+    return QUANTITIES[number.quantity](run, number) if number.quantity in QUANTITIES else None
+
+
+def compared(run):
+    """A row for each published number."""
+    rows, end = [], bodies.compared_until(run)
+    for number in measures.published(run):
+        value = measured(run, number)
+        spread = [f"{end:g}" for end in dict.fromkeys((number.low, number.high)) if end is not None]
+        short = number.quantity == "max X" and number.time is not None and end < number.time
+        quantity = f"{number.quantity} (here to {end:.3g} s)" if short else number.quantity
+        rows.append((quantity, number.block or "-", number.unit, value, " to ".join(spread) or "not quoted",
+                     number.model, measures.verdict(value, number), number.source))  # fmt: skip
+    titles = ("quantity", "body", "unit", "here", "experiments", "published model", "against the experiments", "source")
+    return table(titles, rows)

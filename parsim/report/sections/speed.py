@@ -1,0 +1,48 @@
+"""Where the time of the computer went."""
+
+import numpy as np
+
+from parsim.report.curves import FAINT, figure
+from parsim.report.page import section, table
+
+LIMIT_NAMES = {"wall_s": "wall time (s)", "steps": "steps", "ranks": "ranks", "threads": "threads per rank"}
+
+
+def parts(page):
+    """Rates, and the phases of the solver."""
+    return section("Speed", table(("quantity", "value"), speed(page.run)), page.figure(
+        "phases", phases(page.run), "Bars: seconds in each phase of the solver.",
+        "Wall time by phase of the solver, with shares."))
+
+
+def speed(run):
+    """Rates and times as rows."""
+    info = run.info
+    rows = [(LIMIT_NAMES[key], info[key]) for key in LIMIT_NAMES if key in info]
+    rows += [(key.replace("_", " "), value) for key, value in _flat(info.get("rate") or {})]
+    if info.get("wall_s") and info.get("time"):
+        rows.append(("wall seconds per simulated second", info["wall_s"] / info["time"]))
+    return rows
+
+
+def _flat(values, before=""):
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{before}{key} ")
+        else:
+            yield before + key, value
+
+
+def phases(run):
+    """Seconds spent in each phase of the solver, longest on top."""
+    spent = run.info.get("phases") or {}
+    if not spent:
+        return None
+    names = sorted(spent, key=spent.get)
+    seconds = np.array([spent[name] for name in names], float)
+    drawn, axes = figure(1, 1, 0.7 + 0.27 * len(names))
+    bars = axes[0, 0].barh([name.replace("_", " ") for name in names], seconds, color=FAINT)
+    total = max(seconds.sum(), 1e-300)
+    axes[0, 0].bar_label(bars, [f" {second / total:.1%}" for second in seconds], fontsize=8)
+    axes[0, 0].set_xlabel("wall time (s)")
+    return drawn
