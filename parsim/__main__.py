@@ -28,10 +28,16 @@ Changes = Annotated[
 ]
 Threads = Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")]
 Ranks = Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")]
-Walltime = Annotated[str | None, typer.Option(
-    metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over")]
-TableFile = Annotated[Path | None, typer.Option(
-    "--table", metavar="TABLE", help="CSV: the first line names keys of the case, each further line is a run")]
+Walltime = Annotated[
+    str | None,
+    typer.Option(metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over"),
+]
+TableFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--table", metavar="TABLE", help="CSV: the first line names keys of the case, each further line is a run"
+    ),
+]
 Row = Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")]
 Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
 
@@ -94,8 +100,9 @@ def resume(
     ranks: Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="another kernel variant: other last bits")] = None,
     walltime: Walltime = None,
-    case: Annotated[Path | None, typer.Option(
-        "--case", metavar="CASE", help="go on only if the run is of this case; its end holds")] = None,
+    case: Annotated[
+        Path | None, typer.Option("--case", metavar="CASE", help="go on only if the run is of this case; its end holds")
+    ] = None,
     changes: Changes = None,
     table: TableFile = None,
     row: Row = None,
@@ -233,8 +240,10 @@ def schema():
 @command
 def new(
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="writes NAME.toml")] = None,
-    example: Annotated[str | None, typer.Option(
-        "--from", metavar="EXAMPLE", help="start from an example, in place of a commented case")] = None,
+    example: Annotated[
+        str | None,
+        typer.Option("--from", metavar="EXAMPLE", help="start from an example, in place of a commented case"),
+    ] = None,
     listed: Annotated[bool, typer.Option("--list", help="print the examples")] = False,
 ):
     """Write a case to start from; never overwrites."""

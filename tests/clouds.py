@@ -76,8 +76,9 @@ def lattice(counts, spacing, jitter=0.0, seed=0):
     size = np.array(counts) * spacing
     place %= size
     count = len(place)
-    every = Particles(count, FIELDS, id=make_id(FLUID, np.arange(count)), kind=FLUID,
-                      x=place[:, 0], y=place[:, 1], z=place[:, 2])
+    every = Particles(
+        count, FIELDS, id=make_id(FLUID, np.arange(count)), kind=FLUID, x=place[:, 0], y=place[:, 1], z=place[:, 2]
+    )
     return every, size
 
 

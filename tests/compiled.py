@@ -34,8 +34,9 @@ def missed():
     """How often numba's cache has missed for each kernel loaded so far: {name: number}."""
     modules = [module for name, module in sys.modules.items() if name.startswith("parsim.")]
     kernels = {id(item): item for module in modules for item in vars(module).values() if isinstance(item, Dispatcher)}
-    return {f"{kernel.__module__}.{kernel.__name__}": sum(kernel.stats.cache_misses.values())
-            for kernel in kernels.values()}
+    return {
+        f"{kernel.__module__}.{kernel.__name__}": sum(kernel.stats.cache_misses.values()) for kernel in kernels.values()
+    }
 
 
 def main(wanted):

@@ -7,6 +7,7 @@ import numpy as np
 
 from parsim.geometry.rotation import from_angles, matrices, turn_of
 from parsim.solid.bodies import Bodies
+from parsim.solid.laws.settings import FoundationLaw
 
 HALF, MASS, MU = (0.03625, 0.03625, 0.00975), 0.089, 0.412
 GRAVITY = (0.0, 0.0, -9.81)
@@ -32,10 +33,18 @@ def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), you
     """The parts of a case that contacts read; soft materials make long sub-steps."""
     faces = dict.fromkeys([f"{a}_{s}" for a in "xyz" for s in ("min", "max")], "open") | dict.fromkeys(walls, "wall")
     material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution)
-    numbers = SimpleNamespace(steps_per_contact=steps, foundation_depth=None)
+    numbers = SimpleNamespace(steps_per_contact=steps, law=FoundationLaw())
     box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=SimpleNamespace(**faces | other))
-    return SimpleNamespace(dimensions=3, axes=(0, 1, 2), gravity=gravity, contacts=numbers, gate=None,
-                           materials={"ice": material}, wall_material="ice", box=box)
+    return SimpleNamespace(
+        dimensions=3,
+        axes=(0, 1, 2),
+        gravity=gravity,
+        contacts=numbers,
+        gate=None,
+        materials={"ice": material},
+        wall_material="ice",
+        box=box,
+    )
 
 
 def blocks(positions, **other):

@@ -40,9 +40,13 @@ def tank(length, height, spacing, fill=None, across=None, periodic="", **water):
     width = 1.0 if across is None else across
     scheme = {key: water.pop(key) for key in list(water) if key in Settings.model_fields}
     x, z = fill or (length, height)
-    return {"dimensions": 2 if across is None else 3, "spacing": spacing, "run": {"until": 1e3},
-            "box": {"max": [length, width, height], "faces": faces},
-            "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [x, width, z]}], "scheme": scheme, **water}}
+    return {
+        "dimensions": 2 if across is None else 3,
+        "spacing": spacing,
+        "run": {"until": 1e3},
+        "box": {"max": [length, width, height], "faces": faces},
+        "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [x, width, z]}], "scheme": scheme, **water},
+    }
 
 
 def fluid(s):
@@ -69,8 +73,18 @@ def standing_wave(rows, amplitude, viscosity, across=None, periods=4.0, disorder
     """
     length, depth = 1.0, 0.5
     spacing = depth / rows
-    s = simulation(tank(length, 1.3 * depth, spacing, (length, depth), across and across * spacing,
-                        "y" if across else "", viscosity=viscosity, disorder=disorder))
+    s = simulation(
+        tank(
+            length,
+            1.3 * depth,
+            spacing,
+            (length, depth),
+            across and across * spacing,
+            "y" if across else "",
+            viscosity=viscosity,
+            disorder=disorder,
+        )
+    )
     k = math.pi / length
     omega = math.sqrt(GRAVITY * k * math.tanh(k * depth))
     speed = amplitude * depth * omega / math.sinh(k * depth)
@@ -96,8 +110,16 @@ def channel(rows, disorder=0.0, until=2.8, profile="log", across=None, **water):
     """
     depth = 0.2
     spacing = depth / rows
-    case = tank(4.0 * depth, 1.5 * depth, spacing, (4.0 * depth, depth), across and across * spacing,
-                "xy" if across else "x", disorder=disorder, **water)
+    case = tank(
+        4.0 * depth,
+        1.5 * depth,
+        spacing,
+        (4.0 * depth, depth),
+        across and across * spacing,
+        "xy" if across else "x",
+        disorder=disorder,
+        **water,
+    )
     fill = case["water"]["fill"][0]
     fill["velocity"] = [0.718, 0.0, 0.0]
     if profile == "log":
@@ -114,8 +136,12 @@ def channel(rows, disorder=0.0, until=2.8, profile="log", across=None, **water):
         s.step()
     p, at = fluid(s)
     late = measured()
-    return {"mean": late[0] / mean, "spread": late[1] / spread if spread > 0.0 else math.nan,
-            "layers": late[2] / layers, "level": 2.0 * p.z[at].mean() / depth}
+    return {
+        "mean": late[0] / mean,
+        "spread": late[1] / spread if spread > 0.0 else math.nan,
+        "layers": late[2] / layers,
+        "level": 2.0 * p.z[at].mean() / depth,
+    }
 
 
 def periodic_box(rows, length, viscosity, **water):
@@ -190,8 +216,15 @@ def dam_break(rows):
 
 def square_in_tank(side, spacing, density, height, width, depth, angle=0.0, **body):
     """A tank, 2D, `width` wide and `depth` deep, with a square of `side` whose centre is at `height`, all in m."""
-    square = {"name": "square", "shape": {"size": [side, 1.0, side]}, "density": density, "material": "wood",
-              "position": [0.5 * width, 0.5, height], "angles": [0.0, angle, 0.0], **body}
+    square = {
+        "name": "square",
+        "shape": {"size": [side, 1.0, side]},
+        "density": density,
+        "material": "wood",
+        "position": [0.5 * width, 0.5, height],
+        "angles": [0.0, angle, 0.0],
+        **body,
+    }
     return tank(width, depth + 2.0 * side, spacing, (width, depth)) | {"materials": WOOD, "bodies": [square]}
 
 

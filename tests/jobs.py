@@ -24,8 +24,14 @@ class Job:
         elif ranks > 1:
             line += ["-n", str(ranks)]
         self.log = open(log, "a+") if log else subprocess.DEVNULL
-        self.process = subprocess.Popen(line, env=mpirun.environment(), stdin=subprocess.DEVNULL, stdout=self.log,
-                                        stderr=self.log, start_new_session=True)
+        self.process = subprocess.Popen(
+            line,
+            env=mpirun.environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=self.log,
+            stderr=self.log,
+            start_new_session=True,
+        )
 
     def until(self, happened):
         """Wait until `happened()`, without a pause; the job must not end before."""

@@ -59,8 +59,9 @@ class Slurm:
         host = socket.gethostname().split(".")[0]
         (self.folder / "state").mkdir()
         config = self.folder / "slurm.conf"
-        config.write_text(_CONFIG.format(host=host, nodes=NODES, folder=self.folder, ports=_free_ports(3),
-                                         cores=os.cpu_count()))
+        config.write_text(
+            _CONFIG.format(host=host, nodes=NODES, folder=self.folder, ports=_free_ports(3), cores=os.cpu_count())
+        )
         self.environment = {**os.environ, "PATH": _PATH, "SLURM_CONF": str(config)}
         key = self.folder / "munge.key"
         key.write_bytes(os.urandom(128))
@@ -116,8 +117,9 @@ class Slurm:
 
     def _start(self, words):
         log = open(self.folder / f"{words[0]}-{len(self._daemons)}.out", "w")
-        self._daemons.append(subprocess.Popen(words, env=self.environment, stdout=log, stderr=log,
-                                              stdin=subprocess.DEVNULL))
+        self._daemons.append(
+            subprocess.Popen(words, env=self.environment, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+        )
 
     def _wait(self, happened, seconds):
         begin = time.monotonic()

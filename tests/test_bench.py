@@ -12,18 +12,41 @@ from parsim.bench import account, cases, limits, model, worker
 from parsim.case.model import parse
 from parsim.machine.timers import Timers
 
-NUMBERS = ("kernel_ns_per_pair", "step_rate_31", "step_rate_21", "ranks_efficiency", "threads_efficiency", "imbalance",
-           "bytes_per_particle", "start_warm_s", "start_cold_s")
+NUMBERS = (
+    "kernel_ns_per_pair",
+    "step_rate_31",
+    "step_rate_21",
+    "ranks_efficiency",
+    "threads_efficiency",
+    "imbalance",
+    "bytes_per_particle",
+    "start_warm_s",
+    "start_cold_s",
+)
 SMALL = {"case": cases.still_water(1000, 2.1), "warm": 1, "steps": 3}
 
 
 def pretended(order, ranks=1, threads=1, environment=None):
     """Figures of a machine that makes a million particle-steps a second, twice that on two cores, and half in 3.1."""
-    speed = 1e6 * (0.5 if order["case"]["water"]["support"] > 3 else 1.0) * ranks * threads
+    speed = 1e6 * (0.5 if order["case"]["water"]["scheme"]["support"] > 3 else 1.0) * ranks * threads
     sweeps = {"momentum": 3.0, "continuity": 2.0, "listed": 1.4}
-    return {"rate": speed, "wall_s": 2.0, "phases": {"momentum": 1.5, "halo": 0.1}, "steps": 9, "fluid": 10**6,
-            "active": 2 * 10**6, "bytes": 800.0, "peak_bytes": 900.0, "uneven": 1.01, "uneven_most": 1.02, "work": 1e6,
-            "kernels": sweeps, "first_step": 30.0 if environment else 13.0, "launched": 10.0, "halo": 10}
+    return {
+        "rate": speed,
+        "wall_s": 2.0,
+        "phases": {"momentum": 1.5, "halo": 0.1},
+        "steps": 9,
+        "fluid": 10**6,
+        "active": 2 * 10**6,
+        "bytes": 800.0,
+        "peak_bytes": 900.0,
+        "uneven": 1.01,
+        "uneven_most": 1.02,
+        "work": 1e6,
+        "kernels": sweeps,
+        "first_step": 30.0 if environment else 13.0,
+        "launched": 10.0,
+        "halo": 10,
+    }
 
 
 @pytest.mark.parametrize("case", [
@@ -88,8 +111,11 @@ def test_the_account_holds_the_figures_and_tells_ratios_first(monkeypatch, capsy
 
 def test_the_model_finds_the_costs_that_made_its_data():
     rng = np.random.default_rng(2)
-    runs = [{"ranks": ranks, "active": int(active), "halo": int(halo)}
-            for ranks in model.RANKS for active, halo in rng.integers(1000, 90_000, (4, 2))]
+    runs = [
+        {"ranks": ranks, "active": int(active), "halo": int(halo)}
+        for ranks in model.RANKS
+        for active, halo in rng.integers(1000, 90_000, (4, 2))
+    ]
     for run in runs:
         run["step_s"] = float(model._terms(run, 2) @ [6e-7, 2e-7, 1e-4])
     found = model.fit(runs, 2)
@@ -107,8 +133,16 @@ def test_the_model_predicts_where_slabs_stop():
     shape = model.SHAPES["tank, 4 : 1 : 1"]
     one, two, three = (model.step_time(10**7, shape, ranks, 8, costs) for ranks in (1, 2, 3))
     assert one > two > three and one == pytest.approx(6e-7 * 10**7 / 8)
-    told = list(model.lines({"costs": costs | {"error": 0.1}, "link": model.NETWORK | {"reduce": 1e-6}, "runs": [],
-                             "predictions": [long, short]}))
+    told = list(
+        model.lines(
+            {
+                "costs": costs | {"error": 0.1},
+                "link": model.NETWORK | {"reduce": 1e-6},
+                "runs": [],
+                "predictions": [long, short],
+            }
+        )
+    )
     assert "0.600 us per active particle" in told[0] and told[-1].startswith("tank")
 
 
@@ -116,9 +150,8 @@ def test_a_phase_inside_another_is_not_counted_twice(monkeypatch):
     now = iter([0.0, 0.0, 1.0, 4.0, 6.0, 10.0, 11.0])
     monkeypatch.setattr("parsim.machine.timers.time.perf_counter", lambda: next(now))
     timers = Timers()
-    with timers("sweep"):
-        with timers("halo"):
-            pass
+    with timers("sweep"), timers("halo"):
+        pass
     with timers("halo"):
         pass
     assert timers.seconds == {"halo": 4.0, "sweep": 3.0}

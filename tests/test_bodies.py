@@ -61,8 +61,14 @@ def test_mass_properties_of_a_box():
 
 
 def test_kinetic_energy_is_the_sum_over_points():
-    bodies = Bodies([(0.1, 0.2, 0.3)], [2.0], [(0.0, 0.0, 0.0)], quaternion=[from_angles((10, 20, 30))],
-                    velocity=[(1.0, 2.0, 3.0)], spin=[(4.0, -5.0, 6.0)])
+    bodies = Bodies(
+        [(0.1, 0.2, 0.3)],
+        [2.0],
+        [(0.0, 0.0, 0.0)],
+        quaternion=[from_angles((10, 20, 30))],
+        velocity=[(1.0, 2.0, 3.0)],
+        spin=[(4.0, -5.0, 6.0)],
+    )
     nodes = np.array([-1.0, 1.0]) / math.sqrt(3.0)  # two Gauss points along each edge are exact for squares
     points = np.stack(np.meshgrid(nodes, nodes, nodes, indexing="ij"), -1).reshape(-1, 3) * bodies.half
     at = points @ matrices(bodies.quaternion)[0].T
@@ -71,15 +77,20 @@ def test_kinetic_energy_is_the_sum_over_points():
 
 
 def test_surface_is_closed_and_looks_outward():
-    bodies = Bodies([(0.1, 0.2, 0.3), (1.0, 1.0, 1.0)], [1.0, 2.0], [(1.0, 2.0, 3.0), (-5.0, 0.0, 0.0)],
-                    quaternion=[from_angles((10, 20, 30)), (1.0, 0.0, 0.0, 0.0)])
+    bodies = Bodies(
+        [(0.1, 0.2, 0.3), (1.0, 1.0, 1.0)],
+        [1.0, 2.0],
+        [(1.0, 2.0, 3.0), (-5.0, 0.0, 0.0)],
+        quaternion=[from_angles((10, 20, 30)), (1.0, 0.0, 0.0, 0.0)],
+    )
     points, quads, body = bodies.surface()
     corner = points[quads]
     cross = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     volumes = (cross * (corner.mean(axis=1) - bodies.position[body])).sum(axis=1) / 3
     assert [volumes[body == b].sum() for b in range(2)] == pytest.approx(bodies.volume)
     assert np.linalg.norm(points - bodies.position.repeat(8, 0), axis=1) == pytest.approx(
-        np.linalg.norm(bodies.half, axis=1).repeat(8))
+        np.linalg.norm(bodies.half, axis=1).repeat(8)
+    )
     assert np.bincount(quads.ravel()).tolist() == [3] * 16
 
 
@@ -118,11 +129,20 @@ def test_free_rotor_converges_to_euler():
 
 def test_from_case():
     shape = SimpleNamespace(size=(0.2, 0.4, 0.6))
-    body = dict(shape=shape, position=(1.0, 2.0, 3.0), angles=(0.0, 0.0, 90.0), velocity=(1.0, 0.0, 0.0),
-                spin=(0.0, 0.0, 1.0), material="ice", fixed=False, released=None)
+    body = {
+        "shape": shape,
+        "position": (1.0, 2.0, 3.0),
+        "angles": (0.0, 0.0, 90.0),
+        "velocity": (1.0, 0.0, 0.0),
+        "spin": (0.0, 0.0, 1.0),
+        "material": "ice",
+        "fixed": False,
+        "released": None,
+    }
     bodies = (SimpleNamespace(name="a", **body), SimpleNamespace(name="b", **body | {"released": 1.0}))
-    case = SimpleNamespace(bodies=bodies, materials={"steel": None, "ice": None}, dimensions=3,
-                           mass_of=lambda body: 5.0)
+    case = SimpleNamespace(
+        bodies=bodies, materials={"steel": None, "ice": None}, dimensions=3, mass_of=lambda body: 5.0
+    )
     made = from_case(case)
     assert made.names == ["a", "b"] and made.material.tolist() == [1, 1] and made.mass.tolist() == [5.0, 5.0]
     assert made.half[0] == pytest.approx((0.1, 0.2, 0.3))

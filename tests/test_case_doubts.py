@@ -41,8 +41,13 @@ def test_a_gauge_needs_a_gap_of_a_spacing_within_its_reach(gap, x, blocked):
 
 
 def test_a_gauge_between_a_body_and_a_wall_or_on_dry_ground():
-    body = {"name": "b", "shape": {"size": [0.391, 1.0, 0.06]}, "density": 600.0, "material": "wood",
-            "position": [0.1955, 0.5, "float"]}
+    body = {
+        "name": "b",
+        "shape": {"size": [0.391, 1.0, 0.06]},
+        "density": 600.0,
+        "material": "wood",
+        "position": [0.1955, 0.5, "float"],
+    }
     case = fills((0.0, 0.4, 0.0, 0.3)) | {"output": {"gauges": [{"name": "here", "x": 0.396}]}}
     assert "gauges.here: stands at or between" in told(case | {"bodies": [body]})
     assert "gauges" not in told(case | {"bodies": [body | {"position": [0.1955, 0.5, 0.2]}]}), "under water"
@@ -78,8 +83,13 @@ def test_touching_fills_are_one_water():
 
 
 def test_a_body_floats_in_stacked_fills_as_in_one():
-    body = {"name": "a", "shape": {"size": [0.1, 1.0, 0.06]}, "density": 800.0, "material": "wood",
-            "position": [0.2, 0.5, "float"]}
+    body = {
+        "name": "a",
+        "shape": {"size": [0.1, 1.0, 0.06]},
+        "density": 800.0,
+        "material": "wood",
+        "position": [0.2, 0.5, "float"],
+    }
     one = parse(fills((0.0, 0.4, 0.0, 0.17)) | {"bodies": [body]})
     two = parse(fills((0.0, 0.4, 0.0, 0.15), (0.0, 0.4, 0.15, 0.17)) | {"bodies": [body]})
     assert two.bodies == one.bodies and two.depth == one.depth
@@ -108,7 +118,8 @@ def test_water_in_the_place_of_the_gate_is_not_asked_for(low, high, words):
 def test_a_table_whose_mean_is_not_one_is_told():
     table = {"kind": "table", "heights": [0.0, 0.2], "shares": [1.0, 1.5]}
     assert "profile.shares: their mean over the depth is 1.25" in told(
-        fills((0.0, 0.4, 0.0, 0.2), velocity=[0.1, 0.0, 0.0], profile=table))
+        fills((0.0, 0.4, 0.0, 0.2), velocity=[0.1, 0.0, 0.0], profile=table)
+    )
     table["shares"] = [0.5, 1.5]
     assert told(fills((0.0, 0.4, 0.0, 0.2), velocity=[0.1, 0.0, 0.0], profile=table)) == ""
 
@@ -147,8 +158,14 @@ def test_water_thinner_than_the_support_is_told(boxes, thin):
     (0.05, True, None), (0.07, False, None),
 ])  # fmt: skip
 def test_a_narrow_passage_under_a_fixed_body_is_told(z, fixed, words):
-    body = {"name": "b0", "shape": {"size": [0.1, 1.0, 0.1]}, "density": 600.0, "material": "wood",
-            "position": [0.2, 0.5, z], "fixed": fixed}
+    body = {
+        "name": "b0",
+        "shape": {"size": [0.1, 1.0, 0.1]},
+        "density": 600.0,
+        "material": "wood",
+        "position": [0.2, 0.5, z],
+        "fixed": fixed,
+    }
     said = told(fills((0.0, 0.4, 0.0, 0.3)) | {"bodies": [body]})
     assert words in said if words else "passage" not in said
 

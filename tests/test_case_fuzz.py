@@ -21,13 +21,61 @@ from parsim.errors import InputError
 
 FEW, MANY = 250, 10_000
 SMALL = 3000  # particles of a case that is also built and run
-SOURCES = [SPACE, PLANE, FLOWING, *(file.read_text() for file in sorted((ROOT / "cases").rglob("*.toml"))
-                                    if file.name[0] != "_" and "extends" not in file.read_text())]
+SOURCES = [
+    SPACE,
+    PLANE,
+    FLOWING,
+    *(
+        file.read_text()
+        for file in sorted((ROOT / "cases").rglob("*.toml"))
+        if file.name[0] != "_" and "extends" not in file.read_text()
+    ),
+]
 WHOLE = [read(file) for file in sorted((ROOT / "cases").rglob("*.toml")) if file.name[0] != "_"]
 BASES = [*map(tomllib.loads, (SPACE, PLANE, FLOWING)), *WHOLE]
-ODD = [0, -1, 1, 1e-9, 1e308, -1e308, 5e-324, -0.0, 10**30, -(10**30), 1e15, 1e6, 0.1, 0.005, math.nan, math.inf,
-       -math.inf, True, False, "", "float", "wall", "periodic", "open", "wood", "A1", "\x00", "é" * 50, [], [0.0],
-       [0, 0, 0], [0.1, 0.1, 0.1], [1e9] * 3, ["a", 1, {}], {}, {"min": 1}, {"x_min": "periodic"}, [[]], [{}], 2, 3]
+ODD = [
+    0,
+    -1,
+    1,
+    1e-9,
+    1e308,
+    -1e308,
+    5e-324,
+    -0.0,
+    10**30,
+    -(10**30),
+    1e15,
+    1e6,
+    0.1,
+    0.005,
+    math.nan,
+    math.inf,
+    -math.inf,
+    True,
+    False,
+    "",
+    "float",
+    "wall",
+    "periodic",
+    "open",
+    "wood",
+    "A1",
+    "\x00",
+    "é" * 50,
+    [],
+    [0.0],
+    [0, 0, 0],
+    [0.1, 0.1, 0.1],
+    [1e9] * 3,
+    ["a", 1, {}],
+    {},
+    {"min": 1},
+    {"x_min": "periodic"},
+    [[]],
+    [{}],
+    2,
+    3,
+]
 
 
 def mutated(data, dice, times):
@@ -132,11 +180,27 @@ def fuzzed(seed):
 def overridden(seed):
     """Texts for --set, from a seed."""
     dice = random.Random(seed)
-    keys = ["spacing", "bodies.A1.density", "bodies.7.x", "run..until", "water.fill.0.max.2", "box", "gate", "a" * 3000,
-            "output.gauges.0.name", "=", "", ".", "materials.polypropylene.young", "bodies.A1.shape.size.1"]
+    keys = [
+        "spacing",
+        "bodies.A1.density",
+        "bodies.7.x",
+        "run..until",
+        "water.fill.0.max.2",
+        "box",
+        "gate",
+        "a" * 3000,
+        "output.gauges.0.name",
+        "=",
+        "",
+        ".",
+        "materials.polypropylene.young",
+        "bodies.A1.shape.size.1",
+    ]
     texts = ["nan", "1e999", "[", '"', "1=2", "\x00", "[1,2,3]", "{a=1}", "9" * 400, "0x10", "1979-05-27", "true", "\n"]
-    return [dice.choice(keys) + dice.choice(["=", "", "=="]) + dice.choice([*texts, as_toml(dice.choice(ODD))])
-            for _ in range(dice.randrange(1, 4))]
+    return [
+        dice.choice(keys) + dice.choice(["=", "", "=="]) + dice.choice([*texts, as_toml(dice.choice(ODD))])
+        for _ in range(dice.randrange(1, 4))
+    ]
 
 
 def judge(path, data, overrides=()):

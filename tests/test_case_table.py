@@ -22,8 +22,10 @@ def table(tmp_path):
 
 def test_a_row_is_changes_of_the_case(table):
     path = table(KEYS + '0.01,1.0,"[0.2, 0.1, 0.1]"\n\n# finer\n 0.005 ,,"[0.2, 0.1, 0.05]"\n')
-    assert rows(path) == [["spacing=0.01", "run.until=1.0", "water.fill.0.max=[0.2, 0.1, 0.1]"],
-                          ["spacing=0.005", "water.fill.0.max=[0.2, 0.1, 0.05]"]]
+    assert rows(path) == [
+        ["spacing=0.01", "run.until=1.0", "water.fill.0.max=[0.2, 0.1, 0.1]"],
+        ["spacing=0.005", "water.fill.0.max=[0.2, 0.1, 0.05]"],
+    ]
     assert row(path, 2) == rows(path)[1]
 
 

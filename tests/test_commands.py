@@ -46,7 +46,7 @@ def test_run_hands_the_complete_case_to_the_solver(solver, tmp_path):
     case = write(tmp_path)["3d"]
     words = ["run", str(case), "-o", "out", "--until", "0.25", "--set", "bodies.A1.density=900", "--set", "run.until=9"]
     assert main([*words, "--force", "--walltime", "1:00:05"]) == 0
-    (given, source, out, force, walltime), = solver.calls
+    ((given, source, out, force, walltime),) = solver.calls
     assert given == load(case, ["bodies.A1.density=900", "run.until=0.25"])
     assert source == case and str(out) == "out" and force is True and walltime == 3605.0
 
@@ -91,7 +91,7 @@ def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
     monkeypatch.setattr(launch, "mpirun", lambda ranks, arguments, stopped: started.append((ranks, arguments)) or 3)
     words = ["run", str(BLOCKS), "-o", "a b", "--set", "spacing=0.01", "--set", "title=x = y", "--until", "1e-1"]
     assert main([*words, "--force", "-n", "2"]) == 3
-    (ranks, arguments), = started
+    ((ranks, arguments),) = started
     assert ranks == 2 and arguments[:4] == [sys.executable, "-P", "-m", "parsim"] and not solver.calls
     assert main(arguments[4:]) == 0
     case = load(BLOCKS, ["spacing=0.01", "title=x = y", "run.until=0.1"])
@@ -134,8 +134,10 @@ def test_check_prints_the_estimate_and_warnings(capsys):
     said = capsys.readouterr().out
     for word in ("a valid case", "water", "4,0", "of 0.000375 s, from -0.3 to 1.2 s", "on each of 4 ranks", "500,000"):
         assert word in said
-    assert said.endswith("warning: bodies.A1 and 3 more: 2 particles across the thinnest side, 0.0195 m; "
-                         "four or more give usable loads\n")
+    assert said.endswith(
+        "warning: bodies.A1 and 3 more: 2 particles across the thinnest side, 0.0195 m; "
+        "four or more give usable loads\n"
+    )
 
 
 @pytest.mark.parametrize("name", ["ice_release/4_blocks_dry", "ice_release/9_blocks_50mm", "floating_square/half"])
@@ -153,11 +155,13 @@ def test_estimate_counts_what_is_built(name):
     assert cost.water == pytest.approx(len(water(case, bodies, WCMPS(case))), rel=0.03)
 
 
-@pytest.mark.parametrize(("count", "said"), [
-    (1e3, "1 second "), (2.1e7, "42 seconds "), (1e9, "33 minutes "), (1e10, "5.6 hours ")])
+@pytest.mark.parametrize(
+    ("count", "said"), [(1e3, "1 second "), (2.1e7, "42 seconds "), (1e9, "33 minutes "), (1e10, "5.6 hours ")]
+)
 def test_check_tells_time_in_a_unit_that_shows_it(monkeypatch, tmp_path, count, said):
-    cost = estimate.Estimate(water=10**6, wall=0, body=0, gate=0, active=1000, bytes=0.0, steps=int(count / 1000),
-                             time_step=1.0)
+    cost = estimate.Estimate(
+        water=10**6, wall=0, body=0, gate=0, active=1000, bytes=0.0, steps=int(count / 1000), time_step=1.0
+    )
     monkeypatch.setattr(estimate, "estimate", lambda case: cost)
     time = estimate.lines(load(write(tmp_path)["2d"]), 1)[3]
     assert time.startswith(f"time       {said}")

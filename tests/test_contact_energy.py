@@ -31,13 +31,29 @@ def heap(random):
     count, planar = random.integers(1, 5), random.random() < 0.2
     half, away = random.uniform(0.01, 0.03, (count, 3)), random.uniform(-0.08, 0.08, (count, 3))
     axes = (0.0, 1.0, 0.0) if planar else (1.0, 1.0, 1.0)
-    turn = [turned(turn_of(*random.normal(0.0, 10.0 ** random.uniform(-5.0, 0.5), 3) * axes),
-                   from_angles(random.choice([0.0, 45.0, 90.0], 3) * axes)) for _ in range(count)]
-    bodies = Bodies(half, 900.0 * 8.0 * half.prod(axis=1), (0.5, 0.5, 0.1) + away, quaternion=turn,
-                    velocity=random.normal(0.0, 0.5, (count, 3)) - 30.0 * away, planar=planar,
-                    spin=random.normal(0.0, 10.0, (count, 3)), fixed=random.random(count) < 0.1)
-    given = case(restitution=random.uniform(0.05, 1.0), friction=random.choice([0.0, 0.4, 1.0]),
-                 young=10.0 ** random.uniform(5.0, 8.0), steps=random.choice([5, 20]))
+    turn = [
+        turned(
+            turn_of(*random.normal(0.0, 10.0 ** random.uniform(-5.0, 0.5), 3) * axes),
+            from_angles(random.choice([0.0, 45.0, 90.0], 3) * axes),
+        )
+        for _ in range(count)
+    ]
+    bodies = Bodies(
+        half,
+        900.0 * 8.0 * half.prod(axis=1),
+        (0.5, 0.5, 0.1) + away,
+        quaternion=turn,
+        velocity=random.normal(0.0, 0.5, (count, 3)) - 30.0 * away,
+        planar=planar,
+        spin=random.normal(0.0, 10.0, (count, 3)),
+        fixed=random.random(count) < 0.1,
+    )
+    given = case(
+        restitution=random.uniform(0.05, 1.0),
+        friction=random.choice([0.0, 0.4, 1.0]),
+        young=10.0 ** random.uniform(5.0, 8.0),
+        steps=random.choice([5, 20]),
+    )
     given.dimensions = 2 if planar else 3
     gate = Moving(random.uniform(0.05, 0.15), random.normal(0.0, 0.5)) if random.random() < 0.7 else None
     loads = np.zeros((count, 6))

@@ -130,8 +130,10 @@ def test_a_stack_stands_on_a_slope():
 
 @pytest.mark.parametrize("yaw", [0.0, 20.0])
 def test_a_stack_of_three_stands(yaw):
-    bodies = blocks([(0.5, 0.5, HALF[2] * (2 * k + 1)) for k in range(3)],
-                    quaternion=[from_angles((0.0, 0.0, yaw * k)) for k in range(3)])
+    bodies = blocks(
+        [(0.5, 0.5, HALF[2] * (2 * k + 1)) for k in range(3)],
+        quaternion=[from_angles((0.0, 0.0, yaw * k)) for k in range(3)],
+    )
     start, contacts = bodies.position.copy(), Contacts(bodies, case())
     go(bodies, contacts, 1e-3, 2000)
     assert np.abs(bodies.position - start)[:, :2].max() < 1e-9
@@ -149,13 +151,24 @@ def test_blocks_collide_head_on():
     assert not bodies.spin.any() or np.abs(bodies.spin).max() < 1e-12
 
 
-@pytest.mark.parametrize("poses", [
-    (FLAT, from_angles((0.0, 0.0, 45.0))), (from_angles((20.0, 45.0, 7.0)), from_angles((0.0, 13.0, 41.0))),
-    (from_angles((45.0, 0.0, 0.0)), from_angles((0.0, 45.0, 0.0))),
-], ids=["face-edge", "skew", "edges crossing"])
+@pytest.mark.parametrize(
+    "poses",
+    [
+        (FLAT, from_angles((0.0, 0.0, 45.0))),
+        (from_angles((20.0, 45.0, 7.0)), from_angles((0.0, 13.0, 41.0))),
+        (from_angles((45.0, 0.0, 0.0)), from_angles((0.0, 45.0, 0.0))),
+    ],
+    ids=["face-edge", "skew", "edges crossing"],
+)
 def test_action_is_reaction(poses):
-    bodies = Bodies([(0.03, 0.03, 0.03)] * 2, [MASS, 2 * MASS], [(0.5, 0.5, 0.6), (0.503, 0.501, 0.5)],
-                    quaternion=poses, velocity=[(0.1, 0.0, -0.5), (0.0, 0.0, 0.5)], spin=[(1.0, 2.0, 3.0), (0, 0, 0)])
+    bodies = Bodies(
+        [(0.03, 0.03, 0.03)] * 2,
+        [MASS, 2 * MASS],
+        [(0.5, 0.5, 0.6), (0.503, 0.501, 0.5)],
+        quaternion=poses,
+        velocity=[(0.1, 0.0, -0.5), (0.0, 0.0, 0.5)],
+        spin=[(1.0, 2.0, 3.0), (0, 0, 0)],
+    )
     contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), young=1e8))
     before, energy = momenta(bodies), bodies.kinetic_energy()
     go(bodies, contacts, 1e-4, 1000)
@@ -169,8 +182,13 @@ def test_action_is_reaction(poses):
 def test_crossing_edges_bounce():
     """Two bars whose edges cross midway between elements."""
     up, down = from_angles((45.0, 0.0, 0.0)), from_angles((0.0, 45.0, 0.0))
-    bodies = Bodies([(0.03, 0.01, 0.01), (0.01, 0.03, 0.01)], [MASS] * 2, [(0.507, 0.5, 0.55), (0.5, 0.507, 0.5)],
-                    quaternion=[up, down], velocity=[(0.0, 0.0, -0.5), (0.0, 0.0, 0.0)])
+    bodies = Bodies(
+        [(0.03, 0.01, 0.01), (0.01, 0.03, 0.01)],
+        [MASS] * 2,
+        [(0.507, 0.5, 0.55), (0.5, 0.507, 0.5)],
+        quaternion=[up, down],
+        velocity=[(0.0, 0.0, -0.5), (0.0, 0.0, 0.0)],
+    )
     contacts, lowest = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), friction=0.0)), 1.0
     for _ in range(700):
         go(bodies, contacts, 1e-4, 1)
@@ -234,8 +252,11 @@ def test_a_rising_gate_drags_a_block_by_friction():
 
 
 def test_going_on_from_what_was_kept_gives_the_same_bits():
-    bodies = blocks([(0.5, 0.5, HALF[2]), (0.5, 0.51, 3 * HALF[2] + 1e-5)], velocity=[(0.3, 0, 0), (0, 0, 0)],
-                    quaternion=[FLAT, from_angles((0.0, 0.0, 10.0))])
+    bodies = blocks(
+        [(0.5, 0.5, HALF[2]), (0.5, 0.51, 3 * HALF[2] + 1e-5)],
+        velocity=[(0.3, 0, 0), (0, 0, 0)],
+        quaternion=[FLAT, from_angles((0.0, 0.0, 10.0))],
+    )
     contacts = Contacts(bodies, case())
     go(bodies, contacts, 2e-4, 100)
     kept = contacts.kept()
@@ -264,8 +285,13 @@ def test_held_bodies_wait_and_fixed_ones_stay():
 
 
 def test_planar_bodies_stay_in_the_plane():
-    bodies = Bodies([(0.05, 0.5, 0.02)] * 2, [5.0] * 2, [(0.5, 0.5, 0.1), (0.53, 0.5, 0.16)], planar=True,
-                    quaternion=[from_angles((0.0, 30.0, 0.0)), from_angles((0.0, -10.0, 0.0))])
+    bodies = Bodies(
+        [(0.05, 0.5, 0.02)] * 2,
+        [5.0] * 2,
+        [(0.5, 0.5, 0.1), (0.53, 0.5, 0.16)],
+        planar=True,
+        quaternion=[from_angles((0.0, 30.0, 0.0)), from_angles((0.0, -10.0, 0.0))],
+    )
     given = case(young=1e8, restitution=0.3)
     given.dimensions = 2
     contacts = Contacts(bodies, given)

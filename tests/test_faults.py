@@ -46,7 +46,7 @@ def status(out):
 
 def contacts(out):
     """Whether bodies have touched in the step before the newest checkpoint."""
-    return checkpoint.newest(out)[0].bodies["contact_load"].any()
+    return checkpoint.newest(out)[0].parts["bodies"]["contact_load"].any()
 
 
 def writing(out):
@@ -176,8 +176,14 @@ def test_a_killed_parsim_takes_its_ranks_along(tmp_path, started):
 def test_a_closed_terminal_stops_the_run_in_good_order(tmp_path, ranks):
     out, (ours, theirs) = tmp_path / "out", pty.openpty()
     line = [sys.executable, "-m", "parsim", "run", CASE, "-o", out, "-n", str(ranks)]
-    job = subprocess.Popen(line, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True,
-                           preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY))
+    job = subprocess.Popen(
+        line,
+        stdin=theirs,
+        stdout=theirs,
+        stderr=theirs,
+        start_new_session=True,
+        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY),
+    )
     os.close(theirs)
     try:
         begin = time.monotonic()

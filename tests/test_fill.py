@@ -46,9 +46,15 @@ def test_profiles_have_the_shape_they_are_named_after():
 
 def two_fills(**water_too):
     """A tank with two fills of their own velocities; no settling."""
-    fills = [{"min": [0.0, 0.0, 0.0], "max": [0.1, 1.0, 0.1], "velocity": [0.2, 0.0, 0.1],
-              "profile": {"kind": "linear", "bottom": 0.5}},
-             {"min": [0.1, 0.0, 0.0], "max": [0.2, 1.0, 0.05], "velocity": [-0.3, 0.0, 0.0]}]
+    fills = [
+        {
+            "min": [0.0, 0.0, 0.0],
+            "max": [0.1, 1.0, 0.1],
+            "velocity": [0.2, 0.0, 0.1],
+            "profile": {"kind": "linear", "bottom": 0.5},
+        },
+        {"min": [0.1, 0.0, 0.0], "max": [0.2, 1.0, 0.05], "velocity": [-0.3, 0.0, 0.0]},
+    ]
     return parse(TANK | {"water": {"fill": fills} | water_too})
 
 
@@ -114,8 +120,15 @@ def test_disorder_moves_nobody_far_nor_out(axes):
 def test_disorder_moves_no_water_into_bodies_or_the_gate(seed):
     random = np.random.default_rng(seed)
     body = {"shape": {"size": [0.06, 1.0, 0.043]}, "density": 700.0, "material": "wood"}
-    bodies = [body | {"name": f"b{i}", "position": [0.06 + 0.17 * i + 0.01 * random.random(), 0.5, 0.08],
-                      "angles": [0.0, 90.0 * random.random(), 0.0]} for i in range(2)]
+    bodies = [
+        body
+        | {
+            "name": f"b{i}",
+            "position": [0.06 + 0.17 * i + 0.01 * random.random(), 0.5, 0.08],
+            "angles": [0.0, 90.0 * random.random(), 0.0],
+        }
+        for i in range(2)
+    ]
     fills = [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.13]}]
     data = TANK | {"box": {"max": [0.4, 1.0, 0.2]}, "bodies": bodies, "gate": {"min_x": 0.147, "max_x": 0.152}}
     even, moved = (simulation(data | {"water": {"fill": fills, "disorder": share}}) for share in (0.0, 0.5))
@@ -128,8 +141,12 @@ def test_disorder_moves_no_water_into_bodies_or_the_gate(seed):
     assert before.shape == after.shape and np.abs(after - before)[:, [0, 2]].mean() > 0.002
 
     def clear(place):
-        boxes = [outside_box(place, c, turn, half, (0, 2))[0] for c, turn, half in zip(
-            even.bodies.position, matrices(even.bodies.quaternion), even.bodies.half, strict=True)]
+        boxes = [
+            outside_box(place, c, turn, half, (0, 2))[0]
+            for c, turn, half in zip(
+                even.bodies.position, matrices(even.bodies.quaternion), even.bodies.half, strict=True
+            )
+        ]
         return np.minimum(np.min(boxes, axis=0), np.maximum(0.147 - place[:, 0], place[:, 0] - 0.152))
 
     assert (clear(after) >= np.minimum(clear(before), 0.005) - 1e-12).all()
@@ -153,8 +170,13 @@ def test_touching_fills_are_one_water_however_they_are_cut(seed):
     random.shuffle(boxes)
     parts = [{"min": [0.01 * x0, 0.0, 0.01 * z0], "max": [0.01 * x1, 1.0, 0.01 * z1]}
              for (x0, z0), (x1, z1) in boxes]  # fmt: skip
-    body = {"name": "b", "shape": {"size": [0.053, 1.0, 0.06]}, "density": 800.0, "material": "wood",
-            "position": [0.1, 0.5, "float"]}
+    body = {
+        "name": "b",
+        "shape": {"size": [0.053, 1.0, 0.06]},
+        "density": 800.0,
+        "material": "wood",
+        "position": [0.1, 0.5, "float"],
+    }
     found = []
     for fills in ([{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.17]}], parts):
         case, free = (parse(TANK | {"bodies": bodies, "water": {"fill": fills}}) for bodies in ([body], []))

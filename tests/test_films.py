@@ -38,8 +38,12 @@ def test_a_body_at_a_wall_is_not_held_there():
 
 
 def test_touching_bodies_are_not_pressed_together():
-    left, right = mean_load([FIXED | {"name": "left", "position": [0.17, 0.5, 0.15]},
-                             FIXED | {"name": "right", "position": [0.23, 0.5, 0.15]}])
+    left, right = mean_load(
+        [
+            FIXED | {"name": "left", "position": [0.17, 0.5, 0.15]},
+            FIXED | {"name": "right", "position": [0.23, 0.5, 0.15]},
+        ]
+    )
     push = 9810.0 * 0.15 * 0.06
     assert abs(left[0]) < 0.1 * push and abs(right[0]) < 0.1 * push
     assert left[2] + right[2] == pytest.approx(2 * WEIGHT, rel=SPREAD)

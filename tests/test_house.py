@@ -91,17 +91,19 @@ def reductions(function):
             inside = {_last(t) for n in ast.walk(loop) if isinstance(n, ast.Assign) for t in _targets(n)}
             inside |= {_last(loop.target)} | {_last(n.target) for n in ast.walk(loop) if isinstance(n, ast.For)}
             for node in ast.walk(loop):
-                if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
-                    if node.target.id not in inside:
-                        yield f"line {node.lineno}: {node.target.id} is summed over a prange"
+                summed = isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name)
+                if summed and node.target.id not in inside:
+                    yield f"line {node.lineno}: {node.target.id} is summed over a prange"
 
 
 def lost_writes(function):
     """What numba drops: inside a prange, writes through a tuple, or to names that a parameter was unpacked into."""
     given, unpacked = {arg.arg for arg in function.args.args}, set()
     for node in ast.walk(function):
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Tuple) and isinstance(
-            node.value, ast.Name | ast.Attribute
+        if (
+            isinstance(node, ast.Assign)
+            and isinstance(node.targets[0], ast.Tuple)
+            and isinstance(node.value, ast.Name | ast.Attribute)
         ):
             unpacked |= {_last(target) for target in node.targets[0].elts}
     for loop in ast.walk(function):
@@ -109,7 +111,7 @@ def lost_writes(function):
             for node in ast.walk(loop):
                 if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
                     root = node.value
-                    if isinstance(root, ast.Attribute) and _last(root.value) in given or _last(root) in unpacked:
+                    if (isinstance(root, ast.Attribute) and _last(root.value) in given) or _last(root) in unpacked:
                         yield f"line {node.lineno}: {_last(root)}[...] is written, and lost"
 
 
@@ -144,8 +146,12 @@ def test_the_rules_can_be_broken():
     assert [fault.split(": ")[1] for fault in arithmetic_faults(weight)] == ["exp()", "**"]
     assert sorted(fault.split(": ")[1] for fault in arithmetic_faults(function)) == ["**", "@", "exp()", "sum()"]
     assert list(reductions(function)) == ["line 8: t is summed over a prange"]
-    (lost,) = kernels(ast.parse("@each\ndef f(p, q):\n  x, y = p\n  z = q.z\n  for i in prange(9):\n    x[i] = z[i]\n"
-                               "    z[i] = y[i]\n    q.y[i] += 1\n"))
+    (lost,) = kernels(
+        ast.parse(
+            "@each\ndef f(p, q):\n  x, y = p\n  z = q.z\n  for i in prange(9):\n    x[i] = z[i]\n"
+            "    z[i] = y[i]\n    q.y[i] += 1\n"
+        )
+    )
     assert list(lost_writes(lost)) == ["line 6: x[...] is written, and lost", "line 8: y[...] is written, and lost"]
     assert own(ast.parse("from parsim import comm\nfrom parsim.fluid.weights import w")) == {"comm", "fluid"}
 
@@ -186,7 +192,7 @@ def test_public_things_are_described(path):
 @pytest.mark.parametrize("path", SOURCES + TESTS + SCRIPTS, ids=name)
 def test_files_are_short_and_finished(path):
     text = path.read_text()
-    assert text.count("\n") <= 300, "split it"
+    assert text.count("\n") <= (350 if path in TESTS else 300), "split it"
     assert not re.search(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X)\b", text)
 
 
@@ -209,6 +215,7 @@ def test_scripts_parse(path):
     subprocess.run(["bash", "-n", path], check=True)
 
 
-def test_ruff_finds_nothing():
-    ran = subprocess.run([sys.executable, "-m", "ruff", "check", "."], cwd=ROOT, capture_output=True, text=True)
+@pytest.mark.parametrize("words", [["check"], ["format", "--check"]])
+def test_ruff_finds_nothing(words):
+    ran = subprocess.run([sys.executable, "-m", "ruff", *words, "."], cwd=ROOT, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stdout

@@ -13,8 +13,15 @@ ROOT = Path(__file__).parents[1]
 PATIENCE = 1500  # s for an installation, or for the tests, which compile
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 PYTHONS = ("3.11", "3.12", "3.13")
-PART = ("test_case.py", "test_case_table.py", "test_commands.py", "test_output.py", "test_report.py", "test_bodies.py",
-        "test_weights.py")  # no numerics in depth, but a use of every package
+PART = (
+    "test_case.py",
+    "test_case_table.py",
+    "test_commands.py",
+    "test_output.py",
+    "test_report.py",
+    "test_bodies.py",
+    "test_weights.py",
+)  # no numerics in depth, but a use of every package
 
 
 def bounds(*extras):
@@ -27,8 +34,11 @@ def interpreter(wanted):
     """Path of a Python of this version, None where there is none."""
     places = [shutil.which(f"python{wanted}"), *Path.home().glob(f".pyenv/versions/{wanted}.*/bin/python")]
     for place in filter(None, places):
-        told = subprocess.run([place, "-c", "import ensurepip, sys; print('%d.%d' % sys.version_info[:2])"],
-                              capture_output=True, text=True)
+        told = subprocess.run(
+            [place, "-c", "import ensurepip, sys; print('%d.%d' % sys.version_info[:2])"],
+            capture_output=True,
+            text=True,
+        )
         if told.stdout.strip() == wanted:
             return place
     return None
@@ -68,11 +78,17 @@ def test_a_fresh_environment_passes_a_part_of_the_tests(wanted, lowest, tmp_path
     environment = {name: text for name, text in os.environ.items() if not name.startswith(("NUMBA_", "PARSIM_"))}
     environment |= {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PATH": f"{inside.parent}:{os.environ['PATH']}"}
     parts = [f"tests/{name}" for name in PART]
-    done([inside, "-P", "-m", "pytest", "-q", *parts, "-p", "no:cacheprovider", "-m", "not slow and not validate"],
-         cwd=work, env=environment)
+    done(
+        [inside, "-P", "-m", "pytest", "-q", *parts, "-p", "no:cacheprovider", "-m", "not slow and not validate"],
+        cwd=work,
+        env=environment,
+    )
     words = ["--set", "spacing=0.01", "--set", "run.settle=0", "--until", "0.002"]
-    told = done([inside.with_name("parsim"), "run", "ice_release/4_blocks_dry", "-o", "out", "-n", "2", *words],
-                cwd=tmp_path, env=environment)
+    told = done(
+        [inside.with_name("parsim"), "run", "ice_release/4_blocks_dry", "-o", "out", "-n", "2", *words],
+        cwd=tmp_path,
+        env=environment,
+    )
     assert "done: t = " in told
 
 

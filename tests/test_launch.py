@@ -98,8 +98,10 @@ def test_usr1_reaches_the_ranks(program):
         "print('ready', flush=True)\n"
         "time.sleep(30)\n"
     )
-    line = (f"import sys; from parsim.launch import mpirun as launch; launch._STARTING = 0.5; "
-            f"sys.exit(launch.mpirun(2, [sys.executable, {str(ranks)!r}]))")
+    line = (
+        f"import sys; from parsim.launch import mpirun as launch; launch._STARTING = 0.5; "
+        f"sys.exit(launch.mpirun(2, [sys.executable, {str(ranks)!r}]))"
+    )
     with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
         assert [job.stdout.readline() for _ in range(2)] == ["ready\n", "ready\n"]
         job.send_signal(signal.SIGUSR1)
@@ -126,8 +128,13 @@ def test_ranks_on_other_machines_know_the_settings(program, monkeypatch):
     monkeypatch.setenv("PRTE_MCA_plm", "ssh")
     monkeypatch.setenv("PRTE_MCA_plm_ssh_agent", str(agent))
     first, *rest = launch.command(2, [sys.executable, show])
-    ran = subprocess.run([first, "--host", "there:1,beyond:1", *rest], env=launch.environment(), capture_output=True,
-                         text=True, timeout=60)
+    ran = subprocess.run(
+        [first, "--host", "there:1,beyond:1", *rest],
+        env=launch.environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert ran.stdout.splitlines() == ["3 host None"] * 2, ran.stderr
 
 
@@ -140,8 +147,10 @@ def test_mpirun_does_not_hear_what_a_scheduler_sends_to_all(program):
         "print(os.getppid(), flush=True)\n"
         "time.sleep(30)\n"
     )
-    line = (f"import sys; from parsim.launch import mpirun as launch; launch._STARTING = 0.5; "
-            f"sys.exit(launch.mpirun(1, [sys.executable, {str(ranks)!r}]))")
+    line = (
+        f"import sys; from parsim.launch import mpirun as launch; launch._STARTING = 0.5; "
+        f"sys.exit(launch.mpirun(1, [sys.executable, {str(ranks)!r}]))"
+    )
     with subprocess.Popen([sys.executable, "-c", line], stdout=subprocess.PIPE, text=True) as job:
         os.kill(int(job.stdout.readline()), signal.SIGTERM)
         with pytest.raises(subprocess.TimeoutExpired):

@@ -91,8 +91,10 @@ def test_lists_hold_what_a_plain_search_finds(periodic):
         assert sorted(p.id[near.index[near.middle[i] : near.end[i]]]) == walls
     for i in near.boundary:
         assert near.end[i] == near.middle[i]
-        assert sorted(p.id[near.index[near.start[i] : near.middle[i]]]) == naive(
-            every, number[p.id[i]], radius, size, periodic)[0]
+        assert (
+            sorted(p.id[near.index[near.start[i] : near.middle[i]]])
+            == naive(every, number[p.id[i]], radius, size, periodic)[0]
+        )
 
 
 def test_a_row_comes_in_the_order_of_memory():

@@ -15,8 +15,14 @@ from parsim.observe import rows_now
 from parsim.run.loop import run
 from parsim.run.simulation import Simulation
 
-FLOE = {"name": "floe", "shape": {"size": [0.08, 1.0, 0.04]}, "density": 900.0, "velocity": [3.0, 0.0, 0.0],
-        "position": [0.3, 0.5, 0.1], "material": "wood"}
+FLOE = {
+    "name": "floe",
+    "shape": {"size": [0.08, 1.0, 0.04]},
+    "density": 900.0,
+    "velocity": [3.0, 0.0, 0.0],
+    "position": [0.3, 0.5, 0.1],
+    "material": "wood",
+}
 LEAVING = {
     "dimensions": 2, "spacing": 0.01, "run": {"until": 0.3}, "materials": WOOD, "bodies": [FLOE],
     "box": {"max": [0.4, 1.0, 0.2], "faces": {"x_max": "open"}},
@@ -86,8 +92,7 @@ def test_the_floor_ends_at_an_open_side():
 def test_no_wall_stands_above_the_box():
     """A block thrown over the wall flies its parabola and leaves."""
     thrown = {"velocity": [2.0, 0.0, 1.5], "position": [0.2, 0.5, 0.17]}
-    s = Simulation(parse(merged(DRY, {"bodies": [merged(FLOE, thrown)],
-                                      "box": {"faces": {"x_max": "wall"}}})), Comm())
+    s = Simulation(parse(merged(DRY, {"bodies": [merged(FLOE, thrown)], "box": {"faces": {"x_max": "wall"}}})), Comm())
     while not s.bodies.gone.any() and s.time < 1.0:
         if s.bodies.position[0, 0] < 0.4:
             assert s.bodies.velocity[0, 0] == 2.0
@@ -97,8 +102,13 @@ def test_no_wall_stands_above_the_box():
 
 
 def test_water_beyond_an_open_side_is_in_no_wall():
-    flowing = merged(LEAVING, {"bodies": [], "water": {"fill": [
-        {"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.1], "velocity": [1.0, 0.0, 0.0]}]}})
+    flowing = merged(
+        LEAVING,
+        {
+            "bodies": [],
+            "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.1], "velocity": [1.0, 0.0, 0.0]}]},
+        },
+    )
     s, fallen = Simulation(parse(flowing), Comm()), 0
     while s.time < 0.2:
         s.step()

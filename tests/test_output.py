@@ -87,9 +87,8 @@ def test_parts_make_the_same_file_as_the_whole(tmp_path):
 
 @pytest.mark.parametrize("count", [2, 4])
 def test_a_frame_with_another_number_of_points_is_not_left_behind(tmp_path, count):
-    with pytest.raises(ValueError, match="point"):
-        with frames.WaterFrame(tmp_path / "wrong", 3, {}, 0.0, 0) as frame:
-            frame.append(np.zeros((count, 3)), {})
+    with pytest.raises(ValueError, match="point"), frames.WaterFrame(tmp_path / "wrong", 3, {}, 0.0, 0) as frame:
+        frame.append(np.zeros((count, 3)), {})
     assert not list(tmp_path.iterdir())
 
 

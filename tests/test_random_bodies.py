@@ -35,8 +35,14 @@ def lone_body(dice, flat, most):
     tilts = [0.0, dice.choice((0.0, dice.uniform(-90.0, 90.0))), 0.0]
     if not flat and dice.random() < 0.5:
         tilts = [dice.uniform(-90.0, 90.0) for _ in range(3)]
-    body = {"name": "a", "shape": {"size": size}, "density": 10.0 ** dice.uniform(0.0, math.log10(8000.0)),
-            "material": "m", "position": [0.5 * length, middle, z], "angles": tilts}
+    body = {
+        "name": "a",
+        "shape": {"size": size},
+        "density": 10.0 ** dice.uniform(0.0, math.log10(8000.0)),
+        "material": "m",
+        "position": [0.5 * length, middle, z],
+        "angles": tilts,
+    }
     case["run"]["settle"] = 0.0
     return case | {"materials": {"m": SOLID}, "bodies": [body]}
 
@@ -79,11 +85,18 @@ def heap(dice):
     corner = np.array(case["box"]["max"])
     while len(bodies) < count:
         a, b, c = edges[len(bodies)]
-        body = {"name": f"b{len(bodies)}", "shape": {"size": [a, 1.0 if flat else b, c]}, "material": "m",
-                "density": dice.uniform(*dice.choice(((50.0, 950.0), (850.0, 950.0), (1050.0, 4000.0))))}
+        body = {
+            "name": f"b{len(bodies)}",
+            "shape": {"size": [a, 1.0 if flat else b, c]},
+            "material": "m",
+            "density": dice.uniform(*dice.choice(((50.0, 950.0), (850.0, 950.0), (1050.0, 4000.0)))),
+        }
         for _ in range(2000):
-            body["position"] = [dice.uniform(0.0, length), 0.5 if flat else dice.uniform(0.0, across),
-                                dice.uniform(0.0, 1.4 * level)]
+            body["position"] = [
+                dice.uniform(0.0, length),
+                0.5 if flat else dice.uniform(0.0, across),
+                dice.uniform(0.0, 1.4 * level),
+            ]
             body["angles"] = [0.0, dice.choice((0.0, dice.uniform(-45.0, 45.0))), 0.0]
             box = turned(body)
             within = np.all(box.corners >= 0.0) and np.all(box.corners <= corner)
@@ -140,7 +153,12 @@ def come_to_rest(case, until=1.0):
 def test_boxes_in_still_water_come_to_rest_at_their_draughts(seed):
     case = heap(random.Random(seed))
     s, speed, off = come_to_rest(case)
-    told(seed=seed, bodies=len(off), spacing=s.case.spacing, speed=speed.max(),
-         off_in_spacings=np.abs(off).max() / s.case.spacing)
+    told(
+        seed=seed,
+        bodies=len(off),
+        spacing=s.case.spacing,
+        speed=speed.max(),
+        off_in_spacings=np.abs(off).max() / s.case.spacing,
+    )
     assert np.abs(off).max() < 0.25 * s.case.spacing
     assert np.sqrt((speed**2).mean(axis=0)).max() < 0.05

@@ -74,8 +74,14 @@ def test_same_bits(one_rank, name, way, mpirun, tmp_path, capsys):
 
 def test_too_many_ranks_are_refused_with_the_number_that_fits(mpirun, tmp_path):
     case = tmp_path / "narrow.toml"
-    case.write_text(CASES["2d"].read_text().replace("[0.6, 1.0, 0.3]", "[0.04, 1.0, 0.3]").split("[gate]")[0].replace(
-        "[0.3, 1.0, 0.15]", "[0.04, 1.0, 0.15]") + "[run]\nuntil = 1.0\n")
+    case.write_text(
+        CASES["2d"]
+        .read_text()
+        .replace("[0.6, 1.0, 0.3]", "[0.04, 1.0, 0.3]")
+        .split("[gate]")[0]
+        .replace("[0.3, 1.0, 0.15]", "[0.04, 1.0, 0.15]")
+        + "[run]\nuntil = 1.0\n"
+    )
     done = mpirun(5, ["run", case, "-o", tmp_path / "out"])
     assert done.returncode == 2
     assert "use at most" in done.stderr and done.stderr.count("error:") == 1

@@ -17,15 +17,27 @@ WOOD = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}
 def pool(factor, across):
     """A case of water that falls on two blocks, one afloat and one beside it, of lengths times `factor`."""
     length, width = 0.24 * factor, 0.06 * factor
-    case = tank(length, 0.2 * factor, 0.01 * factor, (0.5 * length, 0.08 * factor), width if across else None,
-                viscosity=1e-6 * factor * factor, speed=2.0 * factor)
+    case = tank(
+        length,
+        0.2 * factor,
+        0.01 * factor,
+        (0.5 * length, 0.08 * factor),
+        width if across else None,
+        viscosity=1e-6 * factor * factor,
+        speed=2.0 * factor,
+    )
     side = 0.5 * width if across else 0.5
     size = [0.04 * factor, 0.04 * factor if across else 1.0, 0.02 * factor]
     places = [[0.05 * factor, side, 0.08 * factor], [0.16 * factor, side, 0.011 * factor]]
-    bodies = [{"name": f"b{k}", "shape": {"size": size}, "density": 700.0, "material": "wood", "position": place}
-              for k, place in enumerate(places)]
-    return case | {"gravity": [0.0, 0.0, -9.81 * factor], "bodies": bodies,
-                   "materials": {"wood": WOOD | {"young": WOOD["young"] * factor * factor}}}
+    bodies = [
+        {"name": f"b{k}", "shape": {"size": size}, "density": 700.0, "material": "wood", "position": place}
+        for k, place in enumerate(places)
+    ]
+    return case | {
+        "gravity": [0.0, 0.0, -9.81 * factor],
+        "bodies": bodies,
+        "materials": {"wood": WOOD | {"young": WOOD["young"] * factor * factor}},
+    }
 
 
 @pytest.mark.parametrize("across", [True, False])

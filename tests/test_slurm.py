@@ -50,8 +50,9 @@ def submit(cluster, checkout, *words):
     variant.apply()  # names the kernel cache of this process, which spares the job a compilation
     options = [f"--chdir={checkout}", "--parsable", "--output=job.log"]
     environment = cluster.environment | {"NUMBA_CACHE_DIR": os.environ["NUMBA_CACHE_DIR"]}
-    ran = subprocess.run(["sbatch", *options, *map(str, words)], cwd=checkout, env=environment, capture_output=True,
-                         text=True)
+    ran = subprocess.run(
+        ["sbatch", *options, *map(str, words)], cwd=checkout, env=environment, capture_output=True, text=True
+    )
     assert ran.returncode == 0, ran.stderr
     return ran.stdout.strip()
 
@@ -135,8 +136,20 @@ def test_a_job_goes_through_its_walltime_and_the_queue_to_the_end(cluster, check
 
 
 def test_a_table_makes_an_array_of_runs(cluster, checkout):
-    job = submit(cluster, checkout, "-n", "1", "-t", "5", "--array=1-3", "--output=job-%a.log", "jobs/slurm.sh",
-                 "survive.toml", "out", "table.csv")
+    job = submit(
+        cluster,
+        checkout,
+        "-n",
+        "1",
+        "-t",
+        "5",
+        "--array=1-3",
+        "--output=job-%a.log",
+        "jobs/slurm.sh",
+        "survive.toml",
+        "out",
+        "table.csv",
+    )
     states = [ended(cluster, f"{job}_{task}") for task in (1, 2, 3)]
     assert [state[0] for state in states] == ["COMPLETED", "COMPLETED", "FAILED"]
     assert [parsim.open(checkout / f"out-{task}").case["run"]["until"] for task in (1, 2)] == [0.02, 0.03]
@@ -225,10 +238,22 @@ def pbs(checkout, tmp_path):
     def run(code, **variables):
         calls = tmp_path / "calls"
         calls.unlink(missing_ok=True)
-        environment = {"PATH": f"{programs}:{os.environ['PATH']}", "CALLS": str(calls), "FAKE_CODE": str(code),
-                       "PBS_JOBID": "7.server", "PBS_NODEFILE": str(tmp_path / "nodes"), "PBS_O_WORKDIR": str(checkout)}
-        ran = subprocess.run(["bash", checkout / "jobs" / "pbs.sh"], env=environment | variables, cwd="/",
-                             capture_output=True, text=True, timeout=60)
+        environment = {
+            "PATH": f"{programs}:{os.environ['PATH']}",
+            "CALLS": str(calls),
+            "FAKE_CODE": str(code),
+            "PBS_JOBID": "7.server",
+            "PBS_NODEFILE": str(tmp_path / "nodes"),
+            "PBS_O_WORKDIR": str(checkout),
+        }
+        ran = subprocess.run(
+            ["bash", checkout / "jobs" / "pbs.sh"],
+            env=environment | variables,
+            cwd="/",
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
         return ran.returncode, calls.read_text().splitlines() if calls.exists() else [], ran.stderr
 
     return run

@@ -16,8 +16,14 @@ SOLID = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}
 
 def block(size, density, x, z, name="a", **body):
     """A body, 2D, of `size` (along x, along z), m."""
-    return {"name": name, "shape": {"size": [size[0], 1.0, size[1]]}, "density": density, "material": "m",
-            "position": [x, 0.5, z], **body}
+    return {
+        "name": name,
+        "shape": {"size": [size[0], 1.0, size[1]]},
+        "density": density,
+        "material": "m",
+        "position": [x, 0.5, z],
+        **body,
+    }
 
 
 def basin(length, height, spacing, bodies, fill=None, settle=0.0, friction=0.4, **water):
@@ -83,8 +89,11 @@ def test_a_block_slides_down_a_slope_under_water():
     """The gravity of 30 degrees; (g sin - mu N) / (m + added mass) at the start is 1.3 to 1.6 m/s2."""
     case = tank(1.6, 0.4, 0.02, speed=4.0)
     case["box"]["faces"] = {"z_max": "wall"}
-    case |= {"gravity": [4.905, 0.0, -8.495709], "materials": {"m": SOLID | {"friction": 0.2}},
-             "bodies": [block((0.2, 0.1), 2500.0, 0.3, 0.05, released=0.0)]}
+    case |= {
+        "gravity": [4.905, 0.0, -8.495709],
+        "materials": {"m": SOLID | {"friction": 0.2}},
+        "bodies": [block((0.2, 0.1), 2500.0, 0.3, 0.05, released=0.0)],
+    }
     case["run"]["settle"] = 1.0
     times, places, _ = course(simulation(case), 1.0)
     early = np.interp(0.2, times, places[:, 0]) - 0.3
@@ -112,11 +121,15 @@ def test_plates_that_squeeze_water_create_no_energy(spacing):
 
 @pytest.mark.validate
 def test_levels_become_equal_through_a_slot_of_two_spacings():
-    case = tank(0.44, 0.4, 0.01) | {"materials": {"m": SOLID},
-                                    "bodies": [block((0.04, 0.38), 1000.0, 0.22, 0.21, fixed=True)]}
+    case = tank(0.44, 0.4, 0.01) | {
+        "materials": {"m": SOLID},
+        "bodies": [block((0.04, 0.38), 1000.0, 0.22, 0.21, fixed=True)],
+    }
     case["run"] |= {"settle": 0.0}
-    case["water"]["fill"] = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.3]},
-                             {"min": [0.2, 0.0, 0.0], "max": [0.44, 1.0, 0.1]}]
+    case["water"]["fill"] = [
+        {"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.3]},
+        {"min": [0.2, 0.0, 0.0], "max": [0.44, 1.0, 0.1]},
+    ]
     s = simulation(case)
     assert any("passage" in words for words in s.case.warnings())
     heights = []
@@ -129,5 +142,3 @@ def test_levels_become_equal_through_a_slot_of_two_spacings():
     late = time > 6.0
     told(gap_at_4_s=np.interp(4.0, time, one - two), mean_gap=(one - two)[late].mean())
     assert abs((one - two)[late].mean()) < 0.003
-
-

@@ -40,11 +40,18 @@ def test_a_column_of_oil_creeps(viscosity):
 def test_nothing_changes_faster_than_the_step_knows(dimensions, support, weight):
     """The largest rate at which viscosity changes any wave on the lattice, from the wave's own sum."""
     across = None if dimensions == 2 else 0.1
-    scheme = WCMPS(parse(tank(0.1, 0.1, 0.01, None, across, weight=weight, support=support, viscosity=5.0,
-                              noise_damping=0.0)))
+    scheme = WCMPS(
+        parse(tank(0.1, 0.1, 0.01, None, across, weight=weight, support=support, viscosity=5.0, noise_damping=0.0))
+    )
     reach = range(-4, 5)
-    grid = np.array([(i, k) for i in reach for k in reach if (i, k) != (0, 0)] if dimensions == 2 else
-                    [(i, j, k) for i in reach for j in reach for k in reach if (i, j, k) != (0, 0, 0)]) * 0.01
+    grid = (
+        np.array(
+            [(i, k) for i in reach for k in reach if (i, k) != (0, 0)]
+            if dimensions == 2
+            else [(i, j, k) for i in reach for j in reach for k in reach if (i, j, k) != (0, 0, 0)]
+        )
+        * 0.01
+    )
     r = np.linalg.norm(grid, axis=1)
     lattice = {round(d / 0.01, 6): w / d**2 for w, _, d, _ in scheme.lattice.points()}
     slope = np.array([lattice.get(round(d / 0.01, 6), 0.0) for d in r])
@@ -86,8 +93,14 @@ def doomed(step=100, speed=0.5, cfl=1.0, force=0.0):
     """What the words about a failed run look at: a body of 1 kg in water that is expected to reach 1 m/s."""
     load = np.array([[force, 0.0, 0.0, 0.0, 0.0, 0.0]])
     case = SimpleNamespace(speed=1.0, run=SimpleNamespace(cfl=cfl), contacts=SimpleNamespace(steps_per_contact=20))
-    return SimpleNamespace(step_count=step, speed=speed, case=case, scheme=SimpleNamespace(sound=10.0), dt=1e-3,
-                           bodies=SimpleNamespace(contact_load=load, mass=np.ones(1), names=["floe"]))
+    return SimpleNamespace(
+        step_count=step,
+        speed=speed,
+        case=case,
+        scheme=SimpleNamespace(sound=10.0),
+        dt=1e-3,
+        bodies=SimpleNamespace(contact_load=load, mass=np.ones(1), names=["floe"]),
+    )
 
 
 @pytest.mark.parametrize(("signs", "first"), [

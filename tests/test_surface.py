@@ -31,16 +31,18 @@ def shift(domain, near, scheme, pull=0.1, slope=0.0):
     at = near.fluid
     surface.clamp(at, p.surface, scheme.number, 0.005, p.n)
     surface.mark(at, near.lists, p.place, scheme.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
-    recovery.recover(at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), scheme.weight,
-                     recovering(scheme, pull), p.n)
+    recovery.recover(
+        at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), scheme.weight, recovering(scheme, pull), p.n
+    )
     constants = shifting.Shifting(0.004, 0.01, *DOWN, scheme.number * slope)
     shifting.shift(at, p.surface, p.vectors(NORMAL), constants, p.acceleration, p.n)
 
 
 def recovering(scheme, pull):
     """Constants of the recovery by the share `pull`."""
-    return recovery.Recovery(scheme.radius**2, 0.21**2, scheme.number, scheme.own, scheme.whole,
-                             scheme.cut, *DOWN, pull)
+    return recovery.Recovery(
+        scheme.radius**2, 0.21**2, scheme.number, scheme.own, scheme.whole, scheme.cut, *DOWN, pull
+    )
 
 
 @pytest.fixture(params=WEIGHTS)

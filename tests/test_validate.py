@@ -56,9 +56,16 @@ def test_still_water(name):
     inner = slice(window, -window)
     noise = np.sqrt(np.mean((pressure - mean)[inner] ** 2))
     averages = [part.mean() for part in np.array_split(bottom, 10)]
-    told(bottom_pressure_least=min(averages), bottom_pressure_most=max(averages), sensor_mean=pressure.mean(),
-         noise=noise, level_at_start=level[0], level_at_end=level[-1], level_drift=np.abs(level - level[0]).max(),
-         level_off=np.abs(level - 1).max())
+    told(
+        bottom_pressure_least=min(averages),
+        bottom_pressure_most=max(averages),
+        sensor_mean=pressure.mean(),
+        noise=noise,
+        level_at_start=level[0],
+        level_at_end=level[-1],
+        level_drift=np.abs(level - level[0]).max(),
+        level_off=np.abs(level - 1).max(),
+    )
     assert max(abs(a - 1) for a in averages) < 0.01
     assert noise < 0.005
     assert np.abs(level - 1).max() < 0.003 and np.abs(level - level[0]).max() < 0.003

@@ -19,8 +19,13 @@ def test_a_square_floats_as_archimedes_has_it(density, tilt, height):
     case = square_in_tank(0.1, 0.01, 1000.0 * density, 0.5 + 0.1 * height, 0.6, 0.5, angle=tilt + 5.0)
     times, places, tilts = course(simulation(case), 4.0)
     late = times > 2.5
-    told(density=density, tilt=tilts[late].mean(), exact=tilt, swing=tilts[late].std(),
-         centre_in_spacings=(places[late, 2].mean() - 0.5 - 0.1 * height) / 0.01)
+    told(
+        density=density,
+        tilt=tilts[late].mean(),
+        exact=tilt,
+        swing=tilts[late].std(),
+        centre_in_spacings=(places[late, 2].mean() - 0.5 - 0.1 * height) / 0.01,
+    )
     assert abs(tilts[late].mean() - tilt) < 3.0
     assert abs(places[late, 2].mean() - 0.5 - 0.1 * height) < 0.0025
 

@@ -86,13 +86,24 @@ def test_every_possible_variant_can_be_timed():
 
 
 def test_numba_is_told_the_variant(tmp_path):
-    script = ("import os; from parsim.machine import variant; variant.apply(); from numba.core import config; "
-              "print(config.CPU_NAME, config.CPU_FEATURES)")
-    told = {name: subprocess.run([sys.executable, "-c", script], env=os.environ | {variant.NAME: name}, check=True,
-                                 capture_output=True, text=True).stdout for name in variant.possible()}
+    script = (
+        "import os; from parsim.machine import variant; variant.apply(); from numba.core import config; "
+        "print(config.CPU_NAME, config.CPU_FEATURES)"
+    )
+    told = {
+        name: subprocess.run(
+            [sys.executable, "-c", script],
+            env=os.environ | {variant.NAME: name},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for name in variant.possible()
+    }
     assert len(set(told.values())) == len(told)
-    assert all(("+prefer-no-gather" in text) != name.endswith("-gather") for name, text in told.items()
-               if name != "host")
+    assert all(
+        ("+prefer-no-gather" in text) != name.endswith("-gather") for name, text in told.items() if name != "host"
+    )
 
 
 @pytest.mark.slow

@@ -86,8 +86,9 @@ def test_no_case_drawn_at_random_compiles_anything():
 
 
 def test_no_example_compiles_anything():
-    wanted = [[str(path), [f"spacing={COARSE[path.parent.name]}"] if path.parent.name in COARSE else []]
-              for path in CASES]
+    wanted = [
+        [str(path), [f"spacing={COARSE[path.parent.name]}"] if path.parent.name in COARSE else []] for path in CASES
+    ]
     assert dict(zip(map(str, CASES), compiled(wanted), strict=True)) == {str(path): [] for path in CASES}
 
 

@@ -19,15 +19,26 @@ from parsim.run.fill import taken_by_bodies, water
 from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
 
-TANK = {"dimensions": 2, "spacing": 0.01, "box": {"max": [0.2, 1.0, 0.2]}, "run": {"until": 1.0},
-        "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.1]}]},
-        "materials": {"wood": {"young": 1e9, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}}}
-SQUARE = {"name": "square", "shape": {"size": [0.06, 1.0, 0.06]}, "density": 1000.0, "material": "wood",
-          "position": [0.2, 0.5, 0.15]}
-POOL = TANK | {"box": {"max": [0.4, 1.0, 0.4]},
-               "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.3]}]}}
-PERIODIC = {"box": {"max": [0.2, 1.0, 0.2], "faces": {f"{a}_{s}": "periodic" for a in "xz" for s in ("min", "max")}},
-            "gravity": [0.0, 0.0, 0.0]}
+TANK = {
+    "dimensions": 2,
+    "spacing": 0.01,
+    "box": {"max": [0.2, 1.0, 0.2]},
+    "run": {"until": 1.0},
+    "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.1]}]},
+    "materials": {"wood": {"young": 1e9, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
+}
+SQUARE = {
+    "name": "square",
+    "shape": {"size": [0.06, 1.0, 0.06]},
+    "density": 1000.0,
+    "material": "wood",
+    "position": [0.2, 0.5, 0.15],
+}
+POOL = TANK | {"box": {"max": [0.4, 1.0, 0.4]}, "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.4, 1.0, 0.3]}]}}
+PERIODIC = {
+    "box": {"max": [0.2, 1.0, 0.2], "faces": {f"{a}_{s}": "periodic" for a in "xz" for s in ("min", "max")}},
+    "gravity": [0.0, 0.0, 0.0],
+}
 
 
 def simulation(data):
@@ -231,8 +242,9 @@ def test_slabs_start_with_the_parts_of_one_water():
 
 def gated(opens):
     fill = [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.2]}, {"min": [0.21, 0.0, 0.0], "max": [0.4, 1.0, 0.05]}]
-    return simulation(POOL | {"water": {"fill": fill},
-                              "gate": {"min_x": 0.2, "max_x": 0.21, "speed": 1.0, "opens": opens}})
+    return simulation(
+        POOL | {"water": {"fill": fill}, "gate": {"min_x": 0.2, "max_x": 0.21, "speed": 1.0, "opens": opens}}
+    )
 
 
 def test_the_waters_beside_a_closed_gate_never_meet():
@@ -253,10 +265,19 @@ def test_the_waters_beside_a_closed_gate_never_meet():
 @pytest.mark.parametrize("high", [0.12, 0.1225, 0.125, 0.1275])
 def test_no_water_leaves_beside_a_gate_off_the_lattice(high):
     """A plate thinner than the spacing: each side's floor and sides go on behind it without a hole."""
-    fill = [{"min": [0.0, 0.0, 0.0], "max": [high - 0.005, 0.06, 0.1]},
-            {"min": [high, 0.0, 0.0], "max": [0.24, 0.06, 0.04]}]
-    s = simulation(TANK | {"dimensions": 3, "box": {"max": [0.24, 0.06, 0.2]}, "water": {"fill": fill},
-                           "gate": {"min_x": high - 0.005, "max_x": high, "speed": 1.0, "opens": 10.0}})
+    fill = [
+        {"min": [0.0, 0.0, 0.0], "max": [high - 0.005, 0.06, 0.1]},
+        {"min": [high, 0.0, 0.0], "max": [0.24, 0.06, 0.04]},
+    ]
+    s = simulation(
+        TANK
+        | {
+            "dimensions": 3,
+            "box": {"max": [0.24, 0.06, 0.2]},
+            "water": {"fill": fill},
+            "gate": {"min_x": high - 0.005, "max_x": high, "speed": 1.0, "opens": 10.0},
+        }
+    )
     while s.time < 0.15:
         s.step()
     p, at = s.domain.particles, s.near.fluid

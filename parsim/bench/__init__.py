@@ -46,11 +46,16 @@ def _ratios(found):
     for told, value in (
         ("two ranks against one", f"{found['ranks_efficiency']:.3f} of twice the speed"),
         ("two threads against one", f"{found['threads_efficiency']:.3f} of twice the speed"),
-        ("most uneven work, dam break", ", ".join(f"{row['most']:.1%} on {ranks} ranks (mean {row['mean']:.1%})"
-                                                  for ranks, row in balance.items())),
+        (
+            "most uneven work, dam break",
+            ", ".join(f"{row['most']:.1%} on {ranks} ranks (mean {row['mean']:.1%})" for ranks, row in balance.items()),
+        ),
         ("slowest over fastest size", f"{slowest / fastest:.3f}"),
-        ("memory", f"{found['bytes_per_particle']:.0f} bytes per active particle, lists included; at most "
-                   f"{found['peak_bytes_per_particle']:.0f}"),
+        (
+            "memory",
+            f"{found['bytes_per_particle']:.0f} bytes per active particle, lists included; at most "
+            f"{found['peak_bytes_per_particle']:.0f}",
+        ),
         ("start to first step", f"{found['start_warm_s']:.1f} s, with empty caches {found['start_cold_s']:.0f} s"),
         ("slower sweep", f"{found['kernel_ns_per_pair']:.2f} ns per true pair"),
     ):

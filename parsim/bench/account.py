@@ -56,11 +56,20 @@ def everything(tell):
     each = kernels[str(SUPPORTS[0])]
     return {
         "kernel_ns_per_pair": max(each["momentum"], each["continuity"]),
-        "step_rate_31": lowest[3.1], "step_rate_21": lowest[2.1],
-        "ranks_efficiency": ranks, "threads_efficiency": threads, "imbalance": balance["2"]["most"],
-        "bytes_per_particle": memory["bytes"], "peak_bytes_per_particle": memory["peak_bytes"],
-        "start_warm_s": warm, "start_cold_s": cold,
-        "machine": _machine(), "kernels": kernels, "cases": table, "balance": balance, "sizes": sizes,
+        "step_rate_31": lowest[3.1],
+        "step_rate_21": lowest[2.1],
+        "ranks_efficiency": ranks,
+        "threads_efficiency": threads,
+        "imbalance": balance["2"]["most"],
+        "bytes_per_particle": memory["bytes"],
+        "peak_bytes_per_particle": memory["peak_bytes"],
+        "start_warm_s": warm,
+        "start_cold_s": cold,
+        "machine": _machine(),
+        "kernels": kernels,
+        "cases": table,
+        "balance": balance,
+        "sizes": sizes,
     }
 
 
@@ -121,9 +130,15 @@ def _size(count, tell):
 
 
 def _machine():
-    return {"host": platform.node(), "processor": _model(), "cores": mpirun.cores(), "memory_bytes": _memory(),
-            "kernel": variant.chosen(), "python": platform.python_version(),
-            **{name: version(name) for name in ("parsim", "numba", "numpy", "mpi4py")}}
+    return {
+        "host": platform.node(),
+        "processor": _model(),
+        "cores": mpirun.cores(),
+        "memory_bytes": _memory(),
+        "kernel": variant.chosen(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("parsim", "numba", "numpy", "mpi4py")},
+    }
 
 
 def _model():

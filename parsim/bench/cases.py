@@ -31,12 +31,24 @@ def floating_blocks(spacing, support):
     case["gate"] = {"min_x": 0.15, "max_x": 0.155}
     case["materials"] = {"wood": _WOOD}
     case["bodies"] = [
-        {"name": f"block_{row}{column}", "shape": {"size": [0.0725, 0.0725, 0.0195]}, "mass": 0.089, "material": "wood",
-         "position": [0.038 + 0.074 * column, 0.038 + 0.074 * row, "float"]} for row in (0, 1) for column in (0, 1)
-    ]  # fmt: skip
+        {
+            "name": f"block_{row}{column}",
+            "shape": {"size": [0.0725, 0.0725, 0.0195]},
+            "mass": 0.089,
+            "material": "wood",
+            "position": [0.038 + 0.074 * column, 0.038 + 0.074 * row, "float"],
+        }
+        for row in (0, 1)
+        for column in (0, 1)
+    ]
     return case
 
 
 def _case(support, spacing, size, fill):
-    return {"dimensions": 3, "spacing": spacing, "box": {"max": size}, "run": {"until": 100.0},
-            "water": {"scheme": {"support": support}, "fill": fill}}
+    return {
+        "dimensions": 3,
+        "spacing": spacing,
+        "box": {"max": size},
+        "run": {"until": 100.0},
+        "water": {"scheme": {"support": support}, "fill": fill},
+    }

@@ -58,17 +58,34 @@ def sweeps(simulation, calls):
     out = [np.zeros(len(p)) for _ in range(12)]
     one, two, three = (Vectors(*out[k : k + 3]) for k in (0, 3, 6))
     forces = tables.Forces(lattice.own, lattice.whole, scheme.close2, 1.0, 1.0, 1.0, 1.0, 1.0)
-    growth = tables.Growth(lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing,
-                            float(lattice.dimensions))
+    growth = tables.Growth(
+        lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing, float(lattice.dimensions)
+    )
 
     def momentum(lists):
-        kernels.momentum(at, lists, p.kinematics, tables.Pressures(p.p, p.scale, isotropy(p)), lattice.weight, forces,
-                         one, tables.Around(out[9], two, three))
+        kernels.momentum(
+            at,
+            lists,
+            p.kinematics,
+            tables.Pressures(p.p, p.scale, isotropy(p)),
+            lattice.weight,
+            forces,
+            one,
+            tables.Around(out[9], two, three),
+        )
 
     def continuity(lists):
         change = tables.Change(out[0], two, three, Traceless(out[1], out[2], *out[9:]))
-        kernels.continuity(at, lists, p.kinematics, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
-                           lattice.weight, growth, change)
+        kernels.continuity(
+            at,
+            lists,
+            p.kinematics,
+            tables.Density(p.n, p.scale, p.body),
+            p.vectors(VISCOUS),
+            lattice.weight,
+            growth,
+            change,
+        )
 
     works = {
         "momentum": lambda: momentum(lists),

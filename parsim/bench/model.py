@@ -34,13 +34,18 @@ def fitted(tell):
         for ranks in RANKS:
             tell(f"{size[0] * size[1] * size[2]:,} particles on {ranks} ranks")
             run = measured({"case": trough(*size), "warm": 5, "steps": _STEPS}, ranks)
-            runs.append({"ranks": ranks, "active": run["active"], "halo": run["halo"],
-                         "step_s": run["wall_s"] / run["steps"]})
+            runs.append(
+                {"ranks": ranks, "active": run["active"], "halo": run["halo"], "step_s": run["wall_s"] / run["steps"]}
+            )
     costs = fit(runs, mpirun.cores())
     for run in runs:
         run["model_s"] = float(_terms(run, mpirun.cores()) @ [costs["sweep"], costs["halo"], costs["switch"]])
-    return {"costs": costs, "link": link, "runs": runs,
-            "predictions": [predict(shape, count, costs) for shape in SHAPES for count in COUNTS]}
+    return {
+        "costs": costs,
+        "link": link,
+        "runs": runs,
+        "predictions": [predict(shape, count, costs) for shape in SHAPES for count in COUNTS],
+    }
 
 
 def trough(along, across, deep):
@@ -48,8 +53,13 @@ def trough(along, across, deep):
     l0 = 0.01
     size = [round(n * l0, 9) for n in (along, across, deep)]
     box = {"max": [*size[:2], round(size[2] + 5 * l0, 9)], "faces": {"x_min": "periodic", "x_max": "periodic"}}
-    return {"dimensions": 3, "spacing": l0, "run": {"until": 100.0}, "box": box,
-            "water": {"speed": 2.0, "fill": [{"min": [0.0, 0.0, 0.0], "max": size, "velocity": [1.0, 0.0, 0.0]}]}}
+    return {
+        "dimensions": 3,
+        "spacing": l0,
+        "run": {"until": 100.0},
+        "box": box,
+        "water": {"speed": 2.0, "fill": [{"min": [0.0, 0.0, 0.0], "max": size, "velocity": [1.0, 0.0, 0.0]}]},
+    }
 
 
 def _terms(run, cores):
@@ -95,28 +105,47 @@ def predict(name, count, costs, threads=8):
             break
         ranks = more
     step = step_time(count, SHAPES[name], ranks, threads, costs)
-    return {"shape": name, "particles": count, "ranks": ranks, "threads": threads, "step_s": step,
-            "most_ranks": int(along / _LAYERS), "core_hours_per_1e5_steps": step * 1e5 * ranks * threads / 3600}
+    return {
+        "shape": name,
+        "particles": count,
+        "ranks": ranks,
+        "threads": threads,
+        "step_s": step,
+        "most_ranks": int(along / _LAYERS),
+        "core_hours_per_1e5_steps": step * 1e5 * ranks * threads / 3600,
+    }
 
 
 def lines(found):
     """The model in words."""
     costs = found["costs"]
-    yield (f"sweep {1e6 * costs['sweep']:.3f} us per active particle, halo {1e6 * costs['halo']:.3f} us per halo one, "
-           f"switch {1e3 * costs['switch']:.2f} ms per message and rank beyond the cores; error {costs['error']:.1%}")
+    yield (
+        f"sweep {1e6 * costs['sweep']:.3f} us per active particle, halo {1e6 * costs['halo']:.3f} us per halo one, "
+        f"switch {1e3 * costs['switch']:.2f} ms per message and rank beyond the cores; error {costs['error']:.1%}"
+    )
     link = found["link"]
-    yield (f"measured between two ranks here: {1e6 * link['latency']:.1f} us, {link['bandwidth'] / 1e9:.1f} GB/s; "
-           f"all-reduce {1e6 * link['reduce']:.1f} us")
+    yield (
+        f"measured between two ranks here: {1e6 * link['latency']:.1f} us, {link['bandwidth'] / 1e9:.1f} GB/s; "
+        f"all-reduce {1e6 * link['reduce']:.1f} us"
+    )
     yield ""
     yield f"{'ranks':>6}{'active':>10}{'halo':>8}{'measured, ms':>14}{'model, ms':>11}"
     for run in found["runs"]:
-        yield (f"{run['ranks']:>6}{run['active']:>10,}{run['halo']:>8,}{1e3 * run['step_s']:>14.2f}"
-               f"{1e3 * run['model_s']:>11.2f}")
+        yield (
+            f"{run['ranks']:>6}{run['active']:>10,}{run['halo']:>8,}{1e3 * run['step_s']:>14.2f}"
+            f"{1e3 * run['model_s']:>11.2f}"
+        )
     yield ""
-    yield (f"predicted for {1e6 * NETWORK['latency']:g} us and {NETWORK['bandwidth'] / 1e9:g} GB/s between nodes: the "
-           f"most ranks at {_EFFICIENT:g} of one rank's speed")
-    yield (f"{'shape':<22}{'particles':>15}{'ranks':>7}{'of':>7}{'x threads':>11}{'step, s':>9}"
-           f"{'core-hours, 1e5 steps':>23}")
+    yield (
+        f"predicted for {1e6 * NETWORK['latency']:g} us and {NETWORK['bandwidth'] / 1e9:g} GB/s between nodes: the "
+        f"most ranks at {_EFFICIENT:g} of one rank's speed"
+    )
+    yield (
+        f"{'shape':<22}{'particles':>15}{'ranks':>7}{'of':>7}{'x threads':>11}{'step, s':>9}"
+        f"{'core-hours, 1e5 steps':>23}"
+    )
     for row in found["predictions"]:
-        yield (f"{row['shape']:<22}{row['particles']:>15,}{row['ranks']:>7}{row['most_ranks']:>7}{row['threads']:>11}"
-               f"{row['step_s']:>9.3f}{row['core_hours_per_1e5_steps']:>23,.0f}")
+        yield (
+            f"{row['shape']:<22}{row['particles']:>15,}{row['ranks']:>7}{row['most_ranks']:>7}{row['threads']:>11}"
+            f"{row['step_s']:>9.3f}{row['core_hours_per_1e5_steps']:>23,.0f}"
+        )

@@ -76,15 +76,25 @@ def _timed(simulation, recorder, order):
         work += simulation.active
     wall = time.perf_counter() - began
     phases = {name: spent - earlier.get(name, 0.0) for name, spent in simulation.timers.seconds.items()}
-    return {"wall_s": wall, "work": work, "steps": count, "rate": work / wall, "phases": phases,
-            "rebuilds": simulation.rebuilds - rebuilds, "active": simulation.active, "fluid": simulation.fluid_count,
-            "all": simulation.fluid_count + len(simulation.solids.walls) + len(simulation.solids.samples),
-            "halo": len(simulation.domain.particles) - simulation.domain.border.size,
-            "uneven": simulation.uneven[0], "uneven_most": simulation.uneven[1]}
+    return {
+        "wall_s": wall,
+        "work": work,
+        "steps": count,
+        "rate": work / wall,
+        "phases": phases,
+        "rebuilds": simulation.rebuilds - rebuilds,
+        "active": simulation.active,
+        "fluid": simulation.fluid_count,
+        "all": simulation.fluid_count + len(simulation.solids.walls) + len(simulation.solids.samples),
+        "halo": len(simulation.domain.particles) - simulation.domain.border.size,
+        "uneven": simulation.uneven[0],
+        "uneven_most": simulation.uneven[1],
+    }
 
 
 def _messages(comm, small=1, large=1 << 17, times=300):
     """Latency, s, and bandwidth, bytes/s, of an exchange with one neighbour, and the time of an all-reduce, s."""
+
     def seconds(work):
         work()
         begin = time.perf_counter()
@@ -97,8 +107,11 @@ def _messages(comm, small=1, large=1 << 17, times=300):
         return seconds(lambda: comm.exchange_fixed(*arrays))
 
     latency = exchange(small)
-    return {"latency": latency / 2, "bandwidth": 16 * large / max(exchange(large) - latency, 1e-9),
-            "reduce": seconds(lambda: comm.max([1.0]))}
+    return {
+        "latency": latency / 2,
+        "bandwidth": 16 * large / max(exchange(large) - latency, 1e-9),
+        "reduce": seconds(lambda: comm.max([1.0])),
+    }
 
 
 def _resident():

@@ -64,8 +64,10 @@ class GateSamples:
         depth = (np.arange(self._layers) + 0.5) * l0
         in_walls = np.tile((side != 0)[:, None] | (rows < 0), (self._layers, 1, 1)).ravel()
         parts = []
-        for kind, x, behind in ((GATE_UP, self.gate.min_x + depth, self._behind_up),
-                                (GATE_DOWN, self.gate.max_x - depth, self._behind_down)):
+        for kind, x, behind in (
+            (GATE_UP, self.gate.min_x + depth, self._behind_up),
+            (GATE_DOWN, self.gate.max_x - depth, self._behind_down),
+        ):
             part = samples_of(kind, x, across, self.gate.bottom(time) + (rows + 0.5) * l0)
             part.x[in_walls] = np.repeat(behind, across.size * rows.size)[in_walls]
             part.sample = np.tile(rows, x.size * across.size).astype(np.int32)

@@ -106,8 +106,12 @@ def speeds(case):
     found = [(f"bodies.{body.name}.velocity, spin", _fastest(case, body)) for body in case.bodies]
     if case.gate:
         found.append(("gate.speed", case.gate.speed))
-    return [f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
-            "which is water.scheme.sound times water.speed" for key, speed in found if not speed < case.sound_speed]
+    return [
+        f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
+        "which is water.scheme.sound times water.speed"
+        for key, speed in found
+        if not speed < case.sound_speed
+    ]
 
 
 def _fastest(case, body):
@@ -174,11 +178,19 @@ def narrow_passages(case):
     fixed, widest = [body for body in placed(case) if body.fixed], PASSAGE * case.spacing
     boxes = [geometry.of_body(body) for body in fixed]
     grown = [geometry.TurnedBox(box.centre, box.half + 0.5 * widest, box.axes) for box in boxes]
-    gaps = [(i, f"box.faces.{'xyz'[axis]}_{'min' if sign < 0 else 'max'}",
-             sign * (level - box.centre[axis]) - box.reach[axis])
-            for i, box in enumerate(boxes) for axis, sign, level in walled_sides(case)]  # fmt: skip
-    gaps += [(i, f"bodies.{fixed[j].name}", -geometry.overlap(boxes[i], boxes[j], shift))
-             for i, j, shift in geometry.near_pairs(grown, period(case))]
+    gaps = [
+        (
+            i,
+            f"box.faces.{'xyz'[axis]}_{'min' if sign < 0 else 'max'}",
+            sign * (level - box.centre[axis]) - box.reach[axis],
+        )
+        for i, box in enumerate(boxes)
+        for axis, sign, level in walled_sides(case)
+    ]
+    gaps += [
+        (i, f"bodies.{fixed[j].name}", -geometry.overlap(boxes[i], boxes[j], shift))
+        for i, j, shift in geometry.near_pairs(grown, period(case))
+    ]
     return [(fixed[i].name, other, gap) for i, other, gap in gaps if TOUCH < gap < widest - TOUCH]
 
 

@@ -11,8 +11,15 @@ from parsim.errors import InputError
 def checked(case, messages):
     """`case` completed. Raises InputError with `messages` and everything else that is wrong."""
     case, faults = _completed(case)
-    of_bodies = (bodies.names, bodies.materials, bodies.bodies, bodies.speeds, bodies.overlaps, bodies.gate,
-                 bodies.gauges)
+    of_bodies = (
+        bodies.names,
+        bodies.materials,
+        bodies.bodies,
+        bodies.speeds,
+        bodies.overlaps,
+        bodies.gate,
+        bodies.gauges,
+    )
     for check in (_spacing, _box, _faces, fills.faults, _speed, *of_bodies):
         faults += check(case)
     if messages or faults:
@@ -31,15 +38,21 @@ def doubts(case):
         f"thinnest side, {side!r} m; four or more give usable loads"
         for (across, side), names in thin.items()
     ]
-    return told + [
-        f"output.gauges.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
-        f"{case.spacing!r} m; until they move it reads the water under them"
-        for name in bodies.blocked_gauges(case)
-    ] + [
-        f"bodies.{name}: leaves a passage of {gap:.3g} m, {gap / case.spacing:.2g} spacings, to {other}; water passes "
-        f"as it should through {bodies.PASSAGE:g} spacings or more"
-        for name, other, gap in bodies.narrow_passages(case)
-    ] + case.water.scheme.doubts() + fills.doubts(case)
+    return (
+        told
+        + [
+            f"output.gauges.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
+            f"{case.spacing!r} m; until they move it reads the water under them"
+            for name in bodies.blocked_gauges(case)
+        ]
+        + [
+            f"bodies.{name}: leaves a passage of {gap:.3g} m, {gap / case.spacing:.2g} spacings, to {other}; "
+            f"water passes as it should through {bodies.PASSAGE:g} spacings or more"
+            for name, other, gap in bodies.narrow_passages(case)
+        ]
+        + case.water.scheme.doubts()
+        + fills.doubts(case)
+    )
 
 
 def _completed(case):

@@ -89,8 +89,10 @@ def lines(case, ranks):
 def brief(case, ranks):
     """The estimate for one of `ranks` ranks, on one line."""
     cost = estimate(case)
-    return (f"{cost.active:,} active particles, {cost.steps:,} steps, {_memory(cost, ranks)}, "
-            f"{_duration(cost, ranks)}, {_size(sum(disk(case, cost.water)))} on the disk")
+    return (
+        f"{cost.active:,} active particles, {cost.steps:,} steps, {_memory(cost, ranks)}, "
+        f"{_duration(cost, ranks)}, {_size(sum(disk(case, cost.water)))} on the disk"
+    )
 
 
 def _memory(cost, ranks):

@@ -59,8 +59,11 @@ def _placed(data, fault):
     changed = {"loc": tuple(place)}
     if fault["type"] == "union_tag_invalid":
         *others, last = fault["ctx"]["expected_tags"].replace(TAG, "").split(", ")
-        changed = {"loc": (*place, CHOICE), "type": "literal_error",
-                   "ctx": {"expected": f"{', '.join(others)} or {last}"}}
+        changed = {
+            "loc": (*place, CHOICE),
+            "type": "literal_error",
+            "ctx": {"expected": f"{', '.join(others)} or {last}"},
+        }
     elif fault["type"] == "union_tag_not_found":
         table = isinstance(value, dict)
         changed = {"loc": (*place, CHOICE), "type": "missing"} if table else {"loc": tuple(place), "type": "model_type"}

@@ -24,7 +24,6 @@ from parsim.case.types import (
     Place,
     Positive,
     Real,
-    Size,
     Switch,
     Table,
     Vector,
@@ -32,6 +31,8 @@ from parsim.case.types import (
 )
 from parsim.fluid.profiles import Profile
 from parsim.fluid.schemes import DEFAULT, Scheme
+from parsim.solid.laws.settings import FoundationLaw, Law
+from parsim.solid.shapes import Shape
 
 
 class Faces(Table):
@@ -85,18 +86,6 @@ class Water(Table):
     fill: tuple[Fill, ...] = Field((), description="boxes of water at the start")
 
 
-class Shape(Table):
-    """The shape of a body about its centre."""
-
-    kind: Literal["box"] = Field("box", description="a box")
-    size: Size = Field(description="edge lengths (x, y, z) before turning, m; in 2D y = 1")
-
-    @property
-    def volume(self):
-        """Volume, m3."""
-        return math.prod(self.size)
-
-
 class Body(Table):
     """A rigid body. Exactly one of density and mass is given."""
 
@@ -135,10 +124,7 @@ class Material(Table):
 class Contacts(Table):
     """How bodies touch each other, the walls and the gate."""
 
-    law: Literal["foundation"] = Field("foundation", description="contact law: an elastic layer under every face")
-    foundation_depth: Positive | None = Field(
-        None, description="depth of the elastic layer under a face in contact, m; left out: the law's own choice"
-    )
+    law: Law = Field(FoundationLaw(), description="contact law")
     steps_per_contact: Annotated[Whole, Field(ge=5, le=10000)] = Field(20, description="steps in one contact, at least")
 
 

@@ -17,8 +17,11 @@ def rows(path):
     messages += [f"{path}: two columns are named {key}" for key in dict.fromkeys(keys) if keys.count(key) > 1 and key]
     if ";" in keys[0]:
         messages.append(f"{path}: separated by semicolons; separate the values with commas")
-    messages += [f"{path}: row {number} has {len(cells)} values for {len(keys)} keys"
-                 for number, cells in enumerate(lines, 1) if len(cells) != len(keys)]
+    messages += [
+        f"{path}: row {number} has {len(cells)} values for {len(keys)} keys"
+        for number, cells in enumerate(lines, 1)
+        if len(cells) != len(keys)
+    ]
     if messages:
         raise InputError(messages)
     return [[f"{key}={cell}" for key, cell in zip(keys, cells, strict=True) if cell] for cells in lines]

@@ -32,11 +32,14 @@ def _text(example):
         return starter
     known = examples.paths()
     if example not in known:
-        raise InputError(f"--from {example}: no such example; allowed: {', '.join(known)}"
-                         + suggestion(examples.like(example)))
+        raise InputError(
+            f"--from {example}: no such example; allowed: {', '.join(known)}" + suggestion(examples.like(example))
+        )
     schema = starter.split("\n", 1)[0]
-    return (f"{schema}\n# From the example {example} of parsim {__version__}, with every value written out.\n"
-            + model.load(known[example]).to_toml())
+    return (
+        f"{schema}\n# From the example {example} of parsim {__version__}, with every value written out.\n"
+        + model.load(known[example]).to_toml()
+    )
 
 
 def show():

@@ -115,7 +115,8 @@ class Films:
         at = own.start + np.flatnonzero((p.kind[own] == BODY) & (p.image[own] == 0))
         row[p.sample[at]] = at
         self._row = row
-        self._here = np.flatnonzero(self.samples.here[self.sample])
+        patches = self._patch[self.samples.here]
+        self._here = np.sort(patches[patches >= 0])
         span = self.bodies.radius + 0.5 * (_FAR + 2.0) * self._spacing
         self._first, self._others = near_bodies(self.bodies.position, span, self._period)
 
@@ -127,8 +128,9 @@ class Films:
         """
         p, here, b = domain.particles, self._here, self.bodies
         found = Found(*np.zeros((4, here.size, 6)))
-        patches = Patches(self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch,
-                          self.samples.body)
+        patches = Patches(
+            self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch, self.samples.body
+        )
         boxes = Boxes(position, matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period)
         water = Water(p.p, self._head, self._spacing, self._layer, self._deep)
         solids = boxes, self._planes, plate

@@ -31,7 +31,7 @@ class BodySamples:
     """Even samplings of all bodies at about the spacing, down to a support below their surface.
 
     Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
-    the pose, never integrated. `here` (samples,): which lay in this slab when it was last asked for. `units` (8, 6) are
+    the pose, never integrated. `here`: numbers of those that lay in this slab when last asked for. `units` (8, 6) are
     those of the sums in `loads`, by their rows for one body: see `Domain.sum`.
     """
 
@@ -68,19 +68,34 @@ class BodySamples:
 
     def samples(self, slab, time):
         """Body samples of the slab that may see water; InputError for a body that comes to a periodic side."""
-        x, y, z = (np.empty(len(self)) for _ in range(3))
-        turn = matrices(self.bodies.quaternion)
-        locate(self.offsets, self.body, self.bodies.position, turn, Vectors(x, y, z))
-        beside = slab.beside_period(x, y, z)
+        self._keep_off(slab, time)
+        b = self.bodies
+        at, place = self._located(slab.reached(b.position[:, 0], b.radius) & ~b.gone)
+        cells = slab.cells(*place)
+        self.here = at[cells >= 0]
+        awake = np.flatnonzero(slab.awake(cells))
+        at, (x, y, z) = at[awake], (along[awake] for along in place)
+        return Particles(
+            at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x, y=y, z=z, scale=self.scale[at]
+        )
+
+    def _located(self, which):
+        """Numbers (n,) of the samples of `which` bodies (bodies,) bool, and where they are now: three arrays (n,)."""
+        at = np.flatnonzero(which[self.body])
+        place = Vectors(*np.empty((3, at.size)))
+        locate(self.offsets[at], self.body[at], self.bodies.position, matrices(self.bodies.quaternion), place)
+        return at, place
+
+    def _keep_off(self, slab, time):
+        """Refuse a body that comes to a periodic side; the same on every rank."""
+        at, place = self._located(slab.beside_period(*self.bodies.position.T, self.bodies.radius) & ~self.bodies.gone)
+        beside = slab.beside_period(*place)
         if beside.any():
-            raise InputError(f"bodies.{self.bodies.names[self.body[beside.argmax()]]}: reaches a periodic side at t = "
-                             f"{time:.6g} s; water and bodies do not see each other across it: keep off, or use walls")
-        cells = slab.cells(x, y, z)
-        cells[self.bodies.gone[self.body]] = -1
-        self.here = cells >= 0
-        at = np.flatnonzero(slab.awake(cells))
-        return Particles(at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x[at], y=y[at],
-                         z=z[at], scale=self.scale[at])
+            name = self.bodies.names[self.body[at[beside.argmax()]]]
+            raise InputError(
+                f"bodies.{name}: reaches a periodic side at t = {time:.6g} s; water and bodies do not see "
+                "each other across it: keep off, or use walls"
+            )
 
     def place(self, p, position, quaternion):
         """Put the body samples among the particles `p`, halo included, where the given pose has them.
@@ -198,8 +213,11 @@ def expel(at, lists, body, motion, half, axes, way_out, kinematics):
             dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
             nx, ny, nz = sign * turn[b, 0, axis], sign * turn[b, 1, axis], sign * turn[b, 2, axis]
             p, q, r = spin[b]
-            away = ((u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny
-                    + (w[i] - velocity[b, 2] - (p * dy - q * dx)) * nz)
+            away = (
+                (u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx
+                + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny
+                + (w[i] - velocity[b, 2] - (p * dy - q * dx)) * nz
+            )
             more = max(depth / way_out - away, 0.0)
             u[i] += more * nx
             v[i] += more * ny
@@ -254,5 +272,8 @@ def respond(at, body, place, centre, change, lever, p):
         b = body[i]
         dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
         c = change[b]
-        p[i] += (lever[row, 0] * (c[0] + c[4] * dz - c[5] * dy) + lever[row, 1] * (c[1] + c[5] * dx - c[3] * dz)
-                 + lever[row, 2] * (c[2] + c[3] * dy - c[4] * dx))
+        p[i] += (
+            lever[row, 0] * (c[0] + c[4] * dz - c[5] * dy)
+            + lever[row, 1] * (c[1] + c[5] * dx - c[3] * dz)
+            + lever[row, 2] * (c[2] + c[3] * dy - c[4] * dx)
+        )

@@ -68,7 +68,7 @@ class Solids:
 
     def drive(self, flow, reaction, time, dt):
         """Account for the work that the gate does on the water, whose `reaction` on `near.gate` it is, in `dt`, s."""
-        force, = flow.domain.sum(reaction[0][:, 2:], self._scales.force)
+        (force,) = flow.domain.sum(reaction[0][:, 2:], self._scales.force)
         self.contacts.gate_work -= float(force) * self.gate.velocity(time) * dt
 
     def advance(self, flow, time, dt):

@@ -75,8 +75,7 @@ class Domain:
                 shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
                 copy_images(getattr(p, name), self._image_at, self._image_of, shift)
             ends = (slice(0, self.own.start), slice(self.own.stop, len(p)))
-            out = [np.stack([getattr(p, name)[at] for name in names]).astype(float, copy=False)
-                   for at in self._send]
+            out = [np.stack([getattr(p, name)[at] for name in names]).astype(float, copy=False) for at in self._send]
             back = [np.empty((len(names), at.stop - at.start)) for at in ends]
             requests = self.comm.start(*out, *back)
         yield
@@ -192,8 +191,10 @@ class Domain:
                 marks[-REACH:] |= marks[REACH : 2 * REACH]
                 marks = np.ascontiguousarray(np.moveaxis(marks, 0, axis))
         # a column with a cut in it is marked by both owners: hence one more than the reach
-        left, right = (side.reshape(-1, *g.count[1:])
-                       for side in self.comm.exchange(marks[: REACH + 1].ravel(), marks[-REACH - 1 :].ravel()))
+        left, right = (
+            side.reshape(-1, *g.count[1:])
+            for side in self.comm.exchange(marks[: REACH + 1].ravel(), marks[-REACH - 1 :].ravel())
+        )
         padded = np.zeros((len(marks) + 2 * REACH, *marks.shape[1:]), np.uint8)
         padded[REACH:-REACH] = marks
         until, since = -(-begin // LAYERS) - first + REACH, end // LAYERS - first + REACH
@@ -226,9 +227,12 @@ class Domain:
         layers = [g.layer(part.x) for part in parts]
         layer, count = np.concatenate(layers), sum(map(len, parts))
         sides = zip(*map(self._shared, layers), strict=True)
-        halos = self.comm.exchange(*(
-            Particles.join([part.take(shared) for part, shared in zip(parts, side, strict=True)]).pack()
-            for side in sides))
+        halos = self.comm.exchange(
+            *(
+                Particles.join([part.take(shared) for part, shared in zip(parts, side, strict=True)]).pack()
+                for side in sides
+            )
+        )
         left, right = (Particles.unpack(buffer, self._fields) for buffer in halos)
         left_end, right_end = self.comm.rank == 0, self.comm.rank == self.comm.size - 1
         stored = np.concatenate([g.layer(left.x) - g.layers * left_end, layer, g.layer(right.x) + g.layers * right_end])
@@ -251,8 +255,10 @@ class Domain:
         """Which owned particles, given their layers (owned,), are in the halo of the left and of the right slab."""
         begin, end = self.layers
         none = np.zeros(layer.size, bool)
-        return (none if self.comm.left is None else layer < begin + HALO,
-                none if self.comm.right is None else layer >= end - HALO)
+        return (
+            none if self.comm.left is None else layer < begin + HALO,
+            none if self.comm.right is None else layer >= end - HALO,
+        )
 
     def _note_images(self):
         """Owned images, the particles they copy, and the shifts between them."""

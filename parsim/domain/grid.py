@@ -11,8 +11,10 @@ def check_ranks(case, ranks):
     """Raise InputError when the box has too few layers of cells for this many ranks."""
     layers = grid_of(case).layers
     if layers < HALO * ranks:
-        raise InputError(f"{ranks} ranks: the box has {layers} layers of cells along x and a rank needs at least "
-                         f"{HALO}; use at most {layers // HALO} ranks")
+        raise InputError(
+            f"{ranks} ranks: the box has {layers} layers of cells along x and a rank needs at least "
+            f"{HALO}; use at most {layers // HALO} ranks"
+        )
 
 
 def layers_of(case):

@@ -18,11 +18,15 @@ class Slab:
         cell = self._grid.cell(layer // LAYERS - self.begin // LAYERS, y, z)
         return np.where((layer >= self.begin) & (layer < self.end), cell, -1)
 
-    def beside_period(self, *points):
-        """Which of the points, x, y, z (n,) each, lie within a halo of a periodic side: bool (n,)."""
-        g, found = self._grid, np.zeros(points[0].size, bool)
+    def reached(self, x, radius):
+        """Which of the balls about x (n,) of `radius` (n,), m, reach into the slab: bool (n,)."""
+        return (self._grid.layer(x + radius) >= self.begin) & (self._grid.layer(x - radius) < self.end)
+
+    def beside_period(self, x, y, z, radius=0.0):
+        """Which of the balls about x, y, z (n,) of `radius`, m, come within a halo of a periodic side: bool (n,)."""
+        g, points, found = self._grid, (x, y, z), np.zeros(x.size, bool)
         for axis in np.flatnonzero(g.periodic):
-            inside = np.minimum(points[axis] - g.low[axis], g.high[axis] - points[axis])
+            inside = np.minimum(points[axis] - g.low[axis], g.high[axis] - points[axis]) - radius
             found |= inside < REACH * g.edge[axis]
         return found
 

@@ -197,8 +197,14 @@ def mpirun(ranks, arguments, stopped=lambda: False):
         threading.Timer(max(began + _STARTING - heard[-1], 0.0), process.send_signal, [signal.SIGUSR1]).start()
 
     # in a process group of its own, or a terminal would send SIGINT to mpirun as well
-    process = subprocess.Popen(command(ranks, arguments), env=environment(), stdin=subprocess.DEVNULL, process_group=0,
-                               stderr=subprocess.PIPE, preexec_fn=_as_child)
+    process = subprocess.Popen(
+        command(ranks, arguments),
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        process_group=0,
+        stderr=subprocess.PIPE,
+        preexec_fn=_as_child,
+    )
     with heeding(hand_on):
         if stopped():
             hand_on(signal.SIGUSR1, None)

@@ -73,8 +73,10 @@ def seconds(text):
     numbers = [days, *parts] if dash else parts
     whole = all(number.isdecimal() and len(number) < 10 for number in numbers)
     if not whole or len(parts) > 3 or (dash and len(parts) != 3):
-        raise InputError(f"walltime = {text}: must be minutes, or minutes:seconds, hours:minutes:seconds or "
-                         "days-hours:minutes:seconds, such as 12:00:00")
+        raise InputError(
+            f"walltime = {text}: must be minutes, or minutes:seconds, hours:minutes:seconds or "
+            "days-hours:minutes:seconds, such as 12:00:00"
+        )
     if len(numbers) == 1:
         numbers.append("0")
     return float(sum(int(number) * unit for number, unit in zip(reversed(numbers), _UNITS, strict=False)))

@@ -36,8 +36,11 @@ class Watch:
     def __enter__(self):
         self._ring = self._comm.ring()
         if self._comm.size > 1 and not self._ring and self._comm.rank == 0:
-            print("warning: this MPI library bears one thread only: a rank that hangs will not be noticed",
-                  file=sys.stderr, flush=True)
+            print(
+                "warning: this MPI library bears one thread only: a rank that hangs will not be noticed",
+                file=sys.stderr,
+                flush=True,
+            )
         self._thread.start()
         return self
 
@@ -76,19 +79,30 @@ class Watch:
 
     def _accuse(self, heard):
         state = "is silent" if heard is None else "is stuck or silent"
-        print(f"error: rank {self._ring.left} of {self._comm.size} has made no progress for {self._patience:g} s (it "
-              f"{state}); rank {self._comm.rank} ends the job", file=sys.stderr, flush=True)
+        print(
+            f"error: rank {self._ring.left} of {self._comm.size} has made no progress for {self._patience:g} s (it "
+            f"{state}); rank {self._comm.rank} ends the job",
+            file=sys.stderr,
+            flush=True,
+        )
         self._comm.abort(1)
 
     def _confess(self):
         """Say where this rank is, while it still can."""
         stack = "".join(traceback.format_stack(sys._current_frames().get(self._main))[-_FRAMES:])
-        print(f"rank {self._comm.rank} has made no progress for {0.5 * self._patience:g} s; it is at\n{stack}",
-              file=sys.stderr, flush=True)
+        print(
+            f"rank {self._comm.rank} has made no progress for {0.5 * self._patience:g} s; it is at\n{stack}",
+            file=sys.stderr,
+            flush=True,
+        )
 
     def _give_up(self):
-        print(f"error: rank {self._comm.rank} has waited {_DEADLOCK * self._patience:g} s for a message, and so have "
-              "the others: it ends the job", file=sys.stderr, flush=True)
+        print(
+            f"error: rank {self._comm.rank} has waited {_DEADLOCK * self._patience:g} s for a message, and so have "
+            "the others: it ends the job",
+            file=sys.stderr,
+            flush=True,
+        )
         self._comm.abort(1)
 
     def _leave(self, why):

@@ -51,8 +51,10 @@ def possible():
 def checked(name):
     """`name` if this processor can run that variant; InputError otherwise."""
     if name not in possible():
-        raise InputError(f"kernel = {name}: not a variant of this processor; possible: {', '.join(possible())}"
-                         + suggestion(nearest(name, possible())))
+        raise InputError(
+            f"kernel = {name}: not a variant of this processor; possible: {', '.join(possible())}"
+            + suggestion(nearest(name, possible()))
+        )
     return name
 
 
@@ -99,8 +101,12 @@ def code():
 
 def versions():
     """Versions of all that the last bits of a result depend on, besides the variant."""
-    return {"parsim": __version__, "python": platform.python_version(), "processor": _host()[0],
-            **{name: version(name) for name in ("numpy", "numba")}}
+    return {
+        "parsim": __version__,
+        "python": platform.python_version(),
+        "processor": _host()[0],
+        **{name: version(name) for name in ("numpy", "numba")},
+    }
 
 
 def source_hash():
@@ -141,8 +147,10 @@ def _cache():
         if reasons and mpirun.world()[0] == 0:
             print(f"warning: the kernel cache is not used: {reasons[0]}; using {found}", file=sys.stderr, flush=True)
         return found
-    raise InputError("NUMBA_CACHE_DIR: no folder for the kernel cache that this user alone can write: "
-                     f"{'; '.join(reasons)}; name one")
+    raise InputError(
+        "NUMBA_CACHE_DIR: no folder for the kernel cache that this user alone can write: "
+        f"{'; '.join(reasons)}; name one"
+    )
 
 
 def _spare():

@@ -9,8 +9,22 @@ class Bodies:
     """One row for each body."""
 
     name = "bodies"
-    columns = columns(body="-", x="m", y="m", z="m", q0="-", q1="-", q2="-", q3="-", u="m/s", v="m/s", w="m/s",
-                      spin_x="rad/s", spin_y="rad/s", spin_z="rad/s")
+    columns = columns(
+        body="-",
+        x="m",
+        y="m",
+        z="m",
+        q0="-",
+        q1="-",
+        q2="-",
+        q3="-",
+        u="m/s",
+        v="m/s",
+        w="m/s",
+        spin_x="rad/s",
+        spin_y="rad/s",
+        spin_z="rad/s",
+    )
 
     def __init__(self, case):
         pass

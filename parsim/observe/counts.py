@@ -14,8 +14,18 @@ class Counts:
     """One row: numbers of particles, and the volume of the water by its density."""
 
     name = "counts"
-    columns = columns(fluid="-", active="-", all="-", in_walls="-", in_bodies="-", in_gate="-", lost="-", surface="-",
-                      volume="m3", bodies_left="-")
+    columns = columns(
+        fluid="-",
+        active="-",
+        all="-",
+        in_walls="-",
+        in_bodies="-",
+        in_gate="-",
+        lost="-",
+        surface="-",
+        volume="m3",
+        bodies_left="-",
+    )
 
     def __init__(self, case):
         self._walls, self._axes, self._slack = planes_of_walls(case), np.array(case.axes), 0.25 * case.spacing
@@ -25,13 +35,18 @@ class Counts:
         p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
         gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)
         order = np.argsort(s.bodies.position[:, 0], kind="stable")
-        bodies = (s.bodies.position[order], matrices(s.bodies.quaternion[order]), s.bodies.half[order],
-                  s.bodies.radius.max(initial=0.0), self._axes)
+        bodies = (
+            s.bodies.position[order],
+            matrices(s.bodies.quaternion[order]),
+            s.bodies.half[order],
+            s.bodies.radius.max(initial=0.0),
+            self._axes,
+        )
         misplaced(at, p.place, self._walls, bodies, gate, self._slack, count)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
         every = fluid + len(s.solids.walls) + len(s.solids.samples)
         lattice = s.scheme.lattice
-        full, = s.domain.sum((1.0 / (p.n[at] / lattice.number))[:, None], 1.0)  # of m / rho, not of N
+        (full,) = s.domain.sum((1.0 / (p.n[at] / lattice.number))[:, None], 1.0)  # of m / rho, not of N
         return [[fluid, s.active, every, *rest, float(full) * lattice.volume, int(s.bodies.gone.sum())]]
 
 

@@ -13,8 +13,18 @@ class Energy:
     """One row: the step, the parts and their sum; work done and energy lost so far."""
 
     name = "energy"
-    columns = columns(dt="s", kinetic_water="J", potential_water="J", elastic_water="J", kinetic_bodies="J",
-                      potential_bodies="J", elastic_contacts="J", work_gate="J", dissipated_contacts="J", total="J")
+    columns = columns(
+        dt="s",
+        kinetic_water="J",
+        potential_water="J",
+        elastic_water="J",
+        kinetic_bodies="J",
+        potential_bodies="J",
+        elastic_contacts="J",
+        work_gate="J",
+        dissipated_contacts="J",
+        total="J",
+    )
 
     def __init__(self, case):
         self._gravity, self._unit = case.gravity, scales(case).energy
@@ -25,8 +35,12 @@ class Energy:
         constants = s.scheme.mass, s.scheme.lattice.number, s.scheme.sound**2
         energies(at, p.kinematics, p.n, constants, self._gravity, out)
         b, c = s.bodies, s.contacts
-        parts = [*map(float, s.domain.sum(out, self._unit)), b.kinetic_energy(), b.potential_energy(self._gravity),
-                 c.elastic_energy()]
+        parts = [
+            *map(float, s.domain.sum(out, self._unit)),
+            b.kinetic_energy(),
+            b.potential_energy(self._gravity),
+            c.elastic_energy(),
+        ]
         return [[s.dt, *parts, c.gate_work, c.dissipated, sum(parts)]]
 
 

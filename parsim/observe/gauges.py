@@ -29,8 +29,10 @@ class Gauges:
         levels(s.near.fluid, p.surface, p.place, self._places, GAUGE_REACH * self._spacing, self._flat, top)
         top = s.domain.max(*top)
         level = np.where(np.isfinite(top), top + 0.5 * self._spacing, np.nan)
-        return [[name, float(x), float(y), float(z)]
-                for name, (x, y), z in zip(self._names, self._places, level, strict=True)]
+        return [
+            [name, float(x), float(y), float(z)]
+            for name, (x, y), z in zip(self._names, self._places, level, strict=True)
+        ]
 
 
 @kernel

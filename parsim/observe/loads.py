@@ -17,5 +17,6 @@ class Loads:
     def rows(self, s):
         """See `Observer`."""
         loads = {kind: s.bodies.shown(f"{kind}_load") for kind in KINDS}
-        return [[name, kind, *map(float, load[k])]
-                for k, name in enumerate(s.bodies.names) for kind, load in loads.items()]
+        return [
+            [name, kind, *map(float, load[k])] for k, name in enumerate(s.bodies.names) for kind, load in loads.items()
+        ]

@@ -17,5 +17,6 @@ class Lost:
 
     def rows(self, s):
         """See `Observer`."""
-        return [[int(step), float(time), what, int(ident), *map(float, rest)]
-                for step, time, what, ident, *rest in s.gone]
+        return [
+            [int(step), float(time), what, int(ident), *map(float, rest)] for step, time, what, ident, *rest in s.gone
+        ]

@@ -7,6 +7,7 @@ hold so far) as text, `water/` with the kept fields, `parts/` with what bodies a
 """
 
 import hashlib
+import itertools
 import json
 import os
 from pathlib import Path
@@ -68,7 +69,7 @@ def _in_order(water, comm):
     beyond = int(comm.max([float(water.id[-1]) if len(water) else 0.0])[0]) + 1
     ends = np.searchsorted(water.id, np.arange(comm.size + 1) * beyond // comm.size)
     ends[0], ends[-1] = 0, len(water)
-    dealt = comm.deal([water.take(slice(*pair)).pack() for pair in zip(ends[:-1], ends[1:], strict=True)])
+    dealt = comm.deal([water.take(slice(*pair)).pack() for pair in itertools.pairwise(ends)])
     water = Particles.join([Particles.unpack(buffer, water.fields) for buffer in dealt])
     return water.take(np.argsort(water.id))
 
@@ -128,8 +129,10 @@ def verify(path):
     except ValueError:
         raise Broken("is too short for a checkpoint") from None
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}; make it readable, or move it away to go "
-                         "on from the one before") from None
+        raise InputError(
+            f"{path}: cannot be read: {error.strerror or error}; make it readable, or move it away to go "
+            "on from the one before"
+        ) from None
 
 
 class Checkpoint:
@@ -147,8 +150,9 @@ class Checkpoint:
                 file.visititems(_check)
             self.case, account = (file[name][:].tobytes().decode() for name in ("case", "account"))
             self.account = json.loads(account)
-            self.parts = {part: {name: data[()] for name, data in kept.items()}
-                          for part, kept in file.get(_PARTS, {}).items()}
+            self.parts = {
+                part: {name: data[()] for name, data in kept.items()} for part, kept in file.get(_PARTS, {}).items()
+            }
 
     def snapshot(self, fields, rank, size):
         """The share of one of `size` ranks: every rank a run of water by ids, with such `fields`, and all parts."""

@@ -14,8 +14,17 @@ from parsim.output.reader import open as open_run
 
 # what a run and its report write, in the order in which it is removed: what a killed job leaves of it must not be taken
 # for another run's
-_OURS = (checkpoint.FOLDER, "case.toml", "frames", "series", "report", "water.vtkhdf.series", "bodies.vtkhdf.series",
-         "reference.csv", "run.json")
+_OURS = (
+    checkpoint.FOLDER,
+    "case.toml",
+    "frames",
+    "series",
+    "report",
+    "water.vtkhdf.series",
+    "bodies.vtkhdf.series",
+    "reference.csv",
+    "run.json",
+)
 
 
 class Folder:
@@ -67,11 +76,15 @@ class Folder:
         nothing = {lock.NAME} if (out / "case.toml").exists() else {lock.NAME, MARK}
         full = out.is_dir() and any(path.name not in nothing and not _is_part(path) for path in out.iterdir())
         if full and not force:
-            raise InputError(f"OUT = {out}: already there and not empty; choose another folder, go on in it with "
-                             "`parsim resume`, or add --force to replace it")
+            raise InputError(
+                f"OUT = {out}: already there and not empty; choose another folder, go on in it with "
+                "`parsim resume`, or add --force to replace it"
+            )
         if full and not is_output(out):
-            raise InputError(f"OUT = {out}: --force replaces only an earlier output of parsim (there is neither {MARK} "
-                             "nor a checkpoint in this folder)")
+            raise InputError(
+                f"OUT = {out}: --force replaces only an earlier output of parsim (there is neither {MARK} "
+                "nor a checkpoint in this folder)"
+            )
         _check_room(case, out)
         out.mkdir(parents=True, exist_ok=True)
         self.lock.take()
@@ -114,8 +127,12 @@ class Folder:
         missing = [name for name in names if not (self.path / name).is_file()]
         missing += [f"series/{name}.csv" for name in TABLES if not (self.path / "series" / f"{name}.csv").is_file()]
         if missing:
-            print(f"warning: {self.path}: {len(missing)} earlier outputs are missing, {missing[0]} first; they are not "
-                  "made again", file=sys.stderr, flush=True)
+            print(
+                f"warning: {self.path}: {len(missing)} earlier outputs are missing, {missing[0]} first; they are not "
+                "made again",
+                file=sys.stderr,
+                flush=True,
+            )
 
     def _furnish(self, case, told):
         write_text(self.path / MARK, json.dumps({"status": "running", **told}) + "\n")
@@ -141,5 +158,8 @@ def _check_room(case, out):
     place = next(path for path in (out, *out.absolute().parents) if path.is_dir())
     needed, free = sum(disk(case, estimate(case).water)), shutil.disk_usage(place).free
     if needed > free:
-        raise WriteError(out, f"the output will take about {needed / 1e9:.2g} GB and {free / 1e9:.2g} GB are free; "
-                              "write fewer frames (output.frames), or elsewhere")
+        raise WriteError(
+            out,
+            f"the output will take about {needed / 1e9:.2g} GB and {free / 1e9:.2g} GB are free; "
+            "write fewer frames (output.frames), or elsewhere",
+        )

@@ -105,8 +105,7 @@ class WaterFrame:
             self._points = root.create_dataset("Points", (self.total, 3), np.float64)
             group = root.create_group("PointData")
             self._fields = {
-                name: group.create_dataset(name, (self.total, *shape), dtype)
-                for name, (dtype, shape) in fields.items()
+                name: group.create_dataset(name, (self.total, *shape), dtype) for name, (dtype, shape) in fields.items()
             }
 
     def append(self, points, fields):

@@ -47,16 +47,26 @@ class Lock:
                 holder = _holder(file)
                 file.close()
                 if sign == 0.0 or seen not in (None, sign):
-                    raise InputError(f"OUT = {self.path.parent}: another job writes it ({holder}); wait for its end. "
-                                     f"If it is dead for certain, remove {self.path}")
+                    raise InputError(
+                        f"OUT = {self.path.parent}: another job writes it ({holder}); wait for its end. "
+                        f"If it is dead for certain, remove {self.path}"
+                    )
                 if seen is None:
-                    print(f"{self.path.parent}: locked by another job ({holder}); waiting up to {STALE:g} s for a sign "
-                          "of life", flush=True)
+                    print(
+                        f"{self.path.parent}: locked by another job ({holder}); waiting up to {STALE:g} s for a sign "
+                        "of life",
+                        flush=True,
+                    )
                 seen = sign
                 time.sleep(LOOK)
-        self._text = json.dumps({"host": platform.node(), "process": os.getpid(),
-                                 "job": os.environ.get("SLURM_JOB_ID") or os.environ.get("PBS_JOBID"),
-                                 "since": datetime.now(UTC).isoformat(timespec="microseconds")})
+        self._text = json.dumps(
+            {
+                "host": platform.node(),
+                "process": os.getpid(),
+                "job": os.environ.get("SLURM_JOB_ID") or os.environ.get("PBS_JOBID"),
+                "since": datetime.now(UTC).isoformat(timespec="microseconds"),
+            }
+        )
         self._file.truncate(0)
         self._file.write(self._text)
         self._file.flush()
@@ -76,8 +86,10 @@ class Lock:
         if self._file.read() != self._text or not _is_at(self._file, self.path):
             self._file.close()
             self._file = None
-            raise RunError(f"another job has taken {self.path.parent} after {STALE:g} s without a sign of life of this "
-                           "one, which ends")
+            raise RunError(
+                f"another job has taken {self.path.parent} after {STALE:g} s without a sign of life of this "
+                "one, which ends"
+            )
         os.utime(self._file.fileno())
 
     def release(self):

@@ -17,7 +17,7 @@ MARK = "run.json"  # the first file that a run writes
 KINDS = ("water", "bodies")  # of frames
 
 
-def open(folder):  # noqa: A001  (public as parsim.open, like gzip.open or h5py.File)
+def open(folder):
     """Open the output folder of a run and return a :class:`Run`.
 
     Raises InputError when the folder is not one, naming the nearest that is.
@@ -142,8 +142,10 @@ class Run:
         try:
             path = self.folder / entries[operator.index(frame)][0]
         except (TypeError, IndexError):
-            raise InputError(f"frame = {frame!r}: must be the number of a frame, 0 the first and -1 the last; "
-                             f"OUT = {self.folder} has {self._held(kind)} of {kind}") from None
+            raise InputError(
+                f"frame = {frame!r}: must be the number of a frame, 0 the first and -1 the last; "
+                f"OUT = {self.folder} has {self._held(kind)} of {kind}"
+            ) from None
         try:
             return h5py.File(path, "r")
         except OSError as error:
@@ -152,8 +154,10 @@ class Run:
     def _frames(self, kind):
         """File and time of each frame of a kind."""
         if kind not in KINDS:
-            raise InputError(f"kind = {kind!r}: no such frames; must be {' or '.join(map(repr, KINDS))}"
-                             + suggestion(nearest(str(kind), KINDS)))
+            raise InputError(
+                f"kind = {kind!r}: no such frames; must be {' or '.join(map(repr, KINDS))}"
+                + suggestion(nearest(str(kind), KINDS))
+            )
         return read_index(self.folder / f"{kind}.vtkhdf.series")
 
     def _held(self, kind):
@@ -165,8 +169,10 @@ class Run:
         path = self.folder / "series" / f"{name}.csv"
         if not path.is_file():
             there = ", ".join(self.series_names) or "none"
-            raise InputError(f"series = {name!r}: not in {path.parent}; there are: {there}"
-                             + suggestion(nearest(str(name), self.series_names)))
+            raise InputError(
+                f"series = {name!r}: not in {path.parent}; there are: {there}"
+                + suggestion(nearest(str(name), self.series_names))
+            )
         # what follows the last line end is a row that was being written
         lines = path.read_text(encoding="utf-8").split("\n")[:-1]
         units = lines[0].removeprefix("# units: ").split(", ")

@@ -157,8 +157,12 @@ class Particles:
 def _joined(parts, field):
     """One field of all parts; those that do not have it get its default."""
     default = _DEFAULTS.get(field.name, 0)
-    return np.concatenate([getattr(part, field.name) if hasattr(part, field.name) else
-                           np.full(len(part), default, field.dtype) for part in parts])
+    return np.concatenate(
+        [
+            getattr(part, field.name) if hasattr(part, field.name) else np.full(len(part), default, field.dtype)
+            for part in parts
+        ]
+    )
 
 
 def make_id(kind, number):

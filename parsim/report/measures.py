@@ -55,10 +55,13 @@ def published(run):
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     numbers = ("low", "high", "model", "time")
     return [
-        Published(**{key: row[key] for key in ("block", "quantity", "unit", "source")},
-                  **{key: float(row[key]) if row[key] else None for key in numbers})
-        for row in rows if row["case"] == run.info.get("case_name")
-    ]  # fmt: skip
+        Published(
+            **{key: row[key] for key in ("block", "quantity", "unit", "source")},
+            **{key: float(row[key]) if row[key] else None for key in numbers},
+        )
+        for row in rows
+        if row["case"] == run.info.get("case_name")
+    ]
 
 
 def verdict(value, number):

@@ -44,8 +44,9 @@ def table(titles, rows):
     if not rows:
         return ""
 
-    numeric = [all(value is None or isinstance(value, int | float) for value in column)
-               for column in zip(*rows, strict=True)]  # fmt: skip
+    numeric = [
+        all(value is None or isinstance(value, int | float) for value in column) for column in zip(*rows, strict=True)
+    ]
 
     def line(kind, row):
         styles = [' class="number"' if number else "" for number in numeric]

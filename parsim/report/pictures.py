@@ -58,10 +58,15 @@ def _by_vtk(run, wanted):
     with tempfile.TemporaryDirectory() as folder:
         paths = {key: str(Path(folder) / f"{key[0]}_{key[1]}.png") for key in wanted}
         jobs = [
-            {"frame": frame, "view": view, "width": quality.width, "fine": quality.oversampling > 1,
-             "path": paths[frame, view]}
+            {
+                "frame": frame,
+                "view": view,
+                "width": quality.width,
+                "fine": quality.oversampling > 1,
+                "path": paths[frame, view],
+            }
             for (frame, view), quality in wanted.items()
-        ]  # fmt: skip
+        ]
         (Path(folder) / "jobs.json").write_text(json.dumps(jobs))
         command = [sys.executable, "-m", "parsim.report.vtk_worker", str(run.folder), f"{folder}/jobs.json"]
         try:
@@ -123,8 +128,18 @@ def _names(axes, scene, view):
             level = sum(abs(across[body] - other) < reach for other in stacked[-4:])
             stacked.append(across[body])
             place = up[body] + reach * (0.85 + 0.75 * level)
-        axes.text(across[body], place, scene.names[body], ha="center", va="center", fontsize=9, fontweight="bold",
-                  color=INK, path_effects=OUTLINE, zorder=4)  # fmt: skip
+        axes.text(
+            across[body],
+            place,
+            scene.names[body],
+            ha="center",
+            va="center",
+            fontsize=9,
+            fontweight="bold",
+            color=INK,
+            path_effects=OUTLINE,
+            zorder=4,
+        )
 
 
 def _tops(scene):

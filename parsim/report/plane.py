@@ -21,8 +21,15 @@ def snapshot(run, frame, kinds=("pressure", "speed"), top=None):
     for axes, kind in zip(drawn.subplots(rows, across, squeeze=False).flat, kinds, strict=True):
         values, label = _coloured(water, kind)
         size = (0.8 * width * 72 * scene.spacing / (high[0] - low[0])) ** 2
-        dots = axes.scatter(*scene.water[:, [0, 2]].T, s=size, c=values, cmap="turbo" if kind == "speed" else "viridis",
-                            vmin=0, vmax=top or scale(water, kind), linewidths=0)  # fmt: skip
+        dots = axes.scatter(
+            *scene.water[:, [0, 2]].T,
+            s=size,
+            c=values,
+            cmap="turbo" if kind == "speed" else "viridis",
+            vmin=0,
+            vmax=top or scale(water, kind),
+            linewidths=0,
+        )
         drawn.colorbar(dots, ax=axes, label=label, shrink=0.8)
         _frame(axes, scene)
     return drawn
@@ -44,8 +51,14 @@ def _coloured(water, kind):
 def _frame(axes, scene):
     """Bodies, gate and tank."""
     low, high = scene.tank
-    axes.add_collection(PolyCollection(scene.points[scene.quads][..., [0, 2]], facecolors=scene.colours[scene.body],
-                                       edgecolors="#3a1d10", linewidths=1))  # fmt: skip
+    axes.add_collection(
+        PolyCollection(
+            scene.points[scene.quads][..., [0, 2]],
+            facecolors=scene.colours[scene.body],
+            edgecolors="#3a1d10",
+            linewidths=1,
+        )
+    )
     for name, place in zip(scene.names, scene.position, strict=True):
         axes.text(place[0], place[2], name, ha="center", va="center", fontsize=8, fontweight="bold")
     if scene.gate:

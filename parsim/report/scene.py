@@ -12,8 +12,10 @@ BOX_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5
 
 def box_corners(low, high):
     """The eight corners (8, 3) of a box, x fastest; :data:`BOX_FACES` and :data:`BOX_EDGES` index them."""
-    return np.array([[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for k in (0, 1) for j in (0, 1)
-                     for i in (0, 1)], float)  # fmt: skip
+    return np.array(
+        [[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for k in (0, 1) for j in (0, 1) for i in (0, 1)],
+        float,
+    )
 
 
 def body_colours(count):
@@ -63,11 +65,17 @@ def load(run, frame):
         gate = ((case["gate"]["min_x"], low[1], lift), (case["gate"]["max_x"], high[1], high[2]))
     nothing = np.zeros((0, 3))
     return Scene(
-        time=water["time"], spacing=case["spacing"], tank=(low, high), water=water["position"],
-        points=bodies["points"] if bodies else nothing, quads=bodies["quads"] if bodies else np.zeros((0, 4), int),
-        body=bodies["body"] if bodies else np.zeros(0, int), position=bodies["position"] if bodies else nothing,
-        names=tuple(run.body_names), gate=gate,
-    )  # fmt: skip
+        time=water["time"],
+        spacing=case["spacing"],
+        tank=(low, high),
+        water=water["position"],
+        points=bodies["points"] if bodies else nothing,
+        quads=bodies["quads"] if bodies else np.zeros((0, 4), int),
+        body=bodies["body"] if bodies else np.zeros(0, int),
+        position=bodies["position"] if bodies else nothing,
+        names=tuple(run.body_names),
+        gate=gate,
+    )
 
 
 @dataclass(frozen=True)
@@ -82,8 +90,10 @@ class View:
     def project(self, points):
         """Picture coordinates across and up, and the distance away, each (n,) in m."""
         points = np.asarray(points, float)
-        return tuple(points[..., 0] * axis[0] + points[..., 1] * axis[1] + points[..., 2] * axis[2]
-                     for axis in (self.right, self.up, self.away))  # fmt: skip
+        return tuple(
+            points[..., 0] * axis[0] + points[..., 1] * axis[1] + points[..., 2] * axis[2]
+            for axis in (self.right, self.up, self.away)
+        )
 
     def extent(self, scene, margin=0.025):
         """The picture's (left, right, bottom, top) in m: the whole tank and a margin, as a share of its length."""

@@ -74,8 +74,16 @@ def furnish(plotter, scene):
         plotter.add_mesh(_quads(box_corners(*scene.gate), BOX_FACES), color=GATE, opacity=0.6, lighting=False)
     surface, drops = water_surface(scene.water, scene.spacing) if len(scene.water) else (pyvista.PolyData(), ())
     if surface.n_cells:
-        plotter.add_mesh(surface, color=WATER, opacity=0.62, smooth_shading=True, ambient=0.25, diffuse=0.85,
-                         specular=0.35, specular_power=30)  # fmt: skip
+        plotter.add_mesh(
+            surface,
+            color=WATER,
+            opacity=0.62,
+            smooth_shading=True,
+            ambient=0.25,
+            diffuse=0.85,
+            specular=0.35,
+            specular_power=30,
+        )
     if len(drops):
         ball = pyvista.Sphere(radius=scene.spacing / 2, theta_resolution=10, phi_resolution=10)
         plotter.add_mesh(pyvista.PolyData(drops).glyph(geom=ball, scale=False, orient=False), color=WATER, ambient=0.6)

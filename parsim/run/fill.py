@@ -29,8 +29,11 @@ def beside_bodies(points, case, bodies):
     found = [np.zeros(0, np.int64)]
     for centre, half in zip(bodies.position, bodies.half, strict=True):
         reach = np.sqrt(sum(half[a] ** 2 for a in case.axes)) + 2.0 * case.spacing
-        found.append(points.within(*((np.abs(row - centre[a]) < reach) | (a not in case.axes)
-                                     for a, row in enumerate(points.rows))))
+        found.append(
+            points.within(
+                *((np.abs(row - centre[a]) < reach) | (a not in case.axes) for a, row in enumerate(points.rows))
+            )
+        )
     return np.unique(np.concatenate(found))
 
 
@@ -135,8 +138,14 @@ def _particles(case, scheme, fill, points, idents):
         depth = level_over(case.water.fill, fill, points[:, 0], points[:, 1]) - points[:, 2]
     pressure = case.water.density * -case.gravity[2] * depth
     return Particles(
-        len(points), case.water.scheme.fields, id=make_id(FLUID, idents), kind=FLUID,
-        x=points[:, 0], y=points[:, 1], z=points[:, 2], **scheme.at_rest(pressure),
+        len(points),
+        case.water.scheme.fields,
+        id=make_id(FLUID, idents),
+        kind=FLUID,
+        x=points[:, 0],
+        y=points[:, 1],
+        z=points[:, 2],
+        **scheme.at_rest(pressure),
     )
 
 

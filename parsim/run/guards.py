@@ -23,8 +23,13 @@ def runaway(simulation):
     bodies = s.bodies.at_fault(s.scheme.sound)
     told = [f"body {name}" for name in bodies[:_SHOWN]] + [_particle(row) for row in rows[:_SHOWN]]
     more = len(rows) + len(bodies) - len(told)
-    text = (f"{_when(s)}: faster than the speed of sound of the model, {s.scheme.sound:.4g} m/s, or not a number: "
-            + "; ".join(told) + (f"; and {more} more" if more > 0 else "") + ". " + _likely(s))
+    text = (
+        f"{_when(s)}: faster than the speed of sound of the model, {s.scheme.sound:.4g} m/s, or not a number: "
+        + "; ".join(told)
+        + (f"; and {more} more" if more > 0 else "")
+        + ". "
+        + _likely(s)
+    )
     return RunError(s.comm.share(text))
 
 
@@ -46,8 +51,10 @@ def outside(simulation, rows):
     """The error for what has left the box: rows of step, time, what, id, place, velocity."""
     told = [_particle(row[3:]) if row[2] == "water" else _moving(row[2], row[4:]) for row in rows]
     more = f"; and {len(told) - _SHOWN} more" if len(told) > _SHOWN else ""
-    return RunError(f"{_when(simulation)}: has left the box: {'; '.join(told[:_SHOWN])}{more}. "
-                    'With run.outside = "remove" it is counted and taken out')
+    return RunError(
+        f"{_when(simulation)}: has left the box: {'; '.join(told[:_SHOWN])}{more}. "
+        'With run.outside = "remove" it is counted and taken out'
+    )
 
 
 def _when(simulation):
@@ -78,8 +85,10 @@ def _likely(simulation):
         kick = np.sqrt((b.contact_load[:, :3] ** 2).sum(1)) / b.mass * s.dt
         if (hit := int(np.argmax(kick))) >= 0 and kick[hit] > _HARD * s.scheme.sound:
             force = math.sqrt((b.contact_load[hit, :3] ** 2).sum())
-            signs.append(f"body {b.names[hit]} is in a contact of {force:.4g} N: contacts.steps_per_contact = "
-                         f"{case.contacts.steps_per_contact} is too few, or its material too stiff")
+            signs.append(
+                f"body {b.names[hit]} is in a contact of {force:.4g} N: contacts.steps_per_contact = "
+                f"{case.contacts.steps_per_contact} is too few, or its material too stiff"
+            )
     if case.run.cfl > 1.0:
         signs.append(step)
     others = [text for text in (speed, start, step) if not any(sign.startswith(text) for sign in signs)]

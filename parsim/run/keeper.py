@@ -40,8 +40,10 @@ class Keeper:
         elif self.case.run.until - simulation.time < 2.0 * simulation.dt * self.case.run.rebuild_at_most:
             self.last = self._snapshot(simulation)
         if room:
-            text = (f"the disk is nearly full; stopped with a checkpoint. Make room for {2 * self.bytes / 1e6:.1f} MB "
-                    f"and more, then: parsim resume {self.recorder.out}")
+            text = (
+                f"the disk is nearly full; stopped with a checkpoint. Make room for {2 * self.bytes / 1e6:.1f} MB "
+                f"and more, then: parsim resume {self.recorder.out}"
+            )
             raise WriteError(self.recorder.out, text, shared=True)
         return REASONS[int(reason)]
 

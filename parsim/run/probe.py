@@ -24,8 +24,13 @@ def measured(names):
     started = {}
     for name in names:
         environment = os.environ | {variant.NAME: name, "NUMBA_NUM_THREADS": "1"}
-        started[name] = subprocess.Popen([sys.executable, "-P", "-m", "parsim.run.probe"], env=environment,
-                                         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        started[name] = subprocess.Popen(
+            [sys.executable, "-P", "-m", "parsim.run.probe"],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
     told = {name: process.communicate()[0] for name, process in started.items()}
     return {name: float(text) for name, text in told.items() if text and not started[name].returncode}
 
@@ -53,10 +58,16 @@ def _seconds():
     fields = np.random.default_rng(1).uniform(1.0, 2.0, (8, x.size))
     growth = tables.Growth(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.9, 3.0)
     rate, *out = np.zeros((12, x.size))
-    arguments = (at, Lists(start, end, end, index), Kinematics(Vectors(x, y, z), Vectors(*fields[:3])),
-                 tables.Density(*fields[3:5], np.full(x.size, -1, np.int32)), Vectors(*fields[5:]),
-                 weights.WEIGHTS["wendland_c4"].of_radius(3.1), growth,
-                 tables.Change(rate, Vectors(*out[:3]), Vectors(*out[3:6]), Traceless(*out[6:])))
+    arguments = (
+        at,
+        Lists(start, end, end, index),
+        Kinematics(Vectors(x, y, z), Vectors(*fields[:3])),
+        tables.Density(*fields[3:5], np.full(x.size, -1, np.int32)),
+        Vectors(*fields[5:]),
+        weights.WEIGHTS["wendland_c4"].of_radius(3.1),
+        growth,
+        tables.Change(rate, Vectors(*out[:3]), Vectors(*out[3:6]), Traceless(*out[6:])),
+    )
     sweep = njit(sweeps.continuity.py_func, error_model="numpy", nogil=True, fastmath=FAST)
     times = []
     for _ in range(_CALLS):

@@ -21,8 +21,13 @@ from parsim.output.reader import MARK
 from parsim.output.series import Table, next_multiple
 from parsim.run.progress import Progress
 
-_FIELDS = {"id": ("i8", ()), "velocity": ("f8", (3,)), "pressure": ("f8", ()), "class": ("u1", ()),
-           "density_ratio": ("f8", ())}
+_FIELDS = {
+    "id": ("i8", ()),
+    "velocity": ("f8", (3,)),
+    "pressure": ("f8", ()),
+    "class": ("u1", ()),
+    "density_ratio": ("f8", ()),
+}
 _BODY = ("position", "quaternion", "velocity", "spin", "water_load", "contact_load", "gravity_load")
 
 
@@ -66,8 +71,12 @@ class Recorder:
         """Open the tables; write the first rows and frame, unless the run goes on."""
         self.observers, self.lost = [observer(self.case) for observer in OBSERVERS], Lost(self.case)
         self.next_frame, self.next_row = simulation.time, simulation.time
-        self.particles = {"fluid": simulation.fluid_count, "active": simulation.active,
-                          "wall": len(simulation.solids.walls), "body": len(simulation.solids.samples)}
+        self.particles = {
+            "fluid": simulation.fluid_count,
+            "active": simulation.active,
+            "wall": len(simulation.solids.walls),
+            "body": len(simulation.solids.samples),
+        }
         if self.resumed:
             self.particles = self.resumed["particles"]
             self.next_frame, self.next_row = self.resumed["next_frame"], self.resumed["next_row"]
@@ -77,24 +86,34 @@ class Recorder:
             self.progress = Progress(simulation.time, self.case.run.until)
             self.info |= self._versions(simulation)
             self.info["start_s"] = clock.perf_counter() - self.began
-            self.info["pieces"].append({key: self.info[key] for key in ("started", "host", "ranks", "threads")}
-                                       | {"from_step": simulation.step_count})
+            self.info["pieces"].append(
+                {key: self.info[key] for key in ("started", "host", "ranks", "threads")}
+                | {"from_step": simulation.step_count}
+            )
             self._write_info()
         if not self.resumed:
             self.watch(simulation)
 
     def _open_tables(self):
         step = self.resumed["step_count"] if self.resumed else None
-        self.tables = {name: Table(self.out / "series" / f"{name}.csv", units, resume=step)
-                       for name, units in TABLES.items()}
+        self.tables = {
+            name: Table(self.out / "series" / f"{name}.csv", units, resume=step) for name, units in TABLES.items()
+        }
 
     def account(self, simulation):
         """What a restart must know of the outputs as they are now."""
         if self.main:
             self._tell_gone(simulation)
         frames = {kind: list(entries) for kind, entries in self.frames.items()}
-        return {"frames": frames, "next_frame": self.next_frame, "next_row": self.next_row, "name": self.name,
-                "particles": self.particles, "kernel": variant.chosen(), "versions": variant.versions()}
+        return {
+            "frames": frames,
+            "next_frame": self.next_frame,
+            "next_row": self.next_row,
+            "name": self.name,
+            "particles": self.particles,
+            "kernel": variant.chosen(),
+            "versions": variant.versions(),
+        }
 
     def secure(self):
         """See all rows on the disk: a checkpoint relies on them."""
@@ -147,8 +166,14 @@ class Recorder:
         p, at = simulation.domain.particles, simulation.near.fluid
         name = f"frames/water_{number:06d}.vtkhdf"
         self.frames["water"].append((name, time))
-        arrays = [np.stack([p.x[at], p.y[at], p.z[at]], 1), p.id[at], np.stack([p.u[at], p.v[at], p.w[at]], 1),
-                  p.p[at], p.surface[at], p.n[at] / simulation.scheme.lattice.number]
+        arrays = [
+            np.stack([p.x[at], p.y[at], p.z[at]], 1),
+            p.id[at],
+            np.stack([p.u[at], p.v[at], p.w[at]], 1),
+            p.p[at],
+            p.surface[at],
+            p.n[at] / simulation.scheme.lattice.number,
+        ]
         self._stream(name, simulation.fluid_count, arrays, time, step)
         if self.main and len(simulation.bodies.mass):
             name = f"frames/bodies_{number:06d}.vtkhdf"
@@ -198,32 +223,49 @@ class Recorder:
         self.progress.close(words, simulation.step_count, simulation.time)
         counts = dict(zip(list(TABLES["counts"])[2:], rows["counts"][0], strict=True))
         cores = self.info["ranks"] * self.info["threads"]
-        self._end(words.split()[0], **facts, **{
-            "steps": simulation.step_count, "time": simulation.time, "wall_s": wall,
-            "lost": counts["lost"], "leaks": {k: counts[k] for k in ("in_walls", "in_bodies", "in_gate")},
-            "phases": dict(simulation.timers.seconds), "rebuilds": simulation.rebuilds,
-            "uneven": dict(zip(("mean", "most"), simulation.uneven, strict=True)),
-            "rate": {"active_particle_steps_per_s_per_core": self.progress.work / wall / cores,
-                     "active_particle_steps": self.progress.work, "all": counts["all"]},
-        })
+        self._end(
+            words.split()[0],
+            **facts,
+            steps=simulation.step_count,
+            time=simulation.time,
+            wall_s=wall,
+            lost=counts["lost"],
+            leaks={k: counts[k] for k in ("in_walls", "in_bodies", "in_gate")},
+            phases=dict(simulation.timers.seconds),
+            rebuilds=simulation.rebuilds,
+            uneven=dict(zip(("mean", "most"), simulation.uneven, strict=True)),
+            rate={
+                "active_particle_steps_per_s_per_core": self.progress.work / wall / cores,
+                "active_particle_steps": self.progress.work,
+                "all": counts["all"],
+            },
+        )
 
     def _end(self, status, **facts):
         """Note how the run has ended."""
         self.info |= {"status": status, **facts}
         if self.info["pieces"] and "ended" not in self.info["pieces"][-1]:
             self.info["pieces"][-1] |= {"ended": facts.get("reason", status)} | {
-                key: facts[key] for key in ("steps", "time", "wall_s") if key in facts}
+                key: facts[key] for key in ("steps", "time", "wall_s") if key in facts
+            }
         self._write_info()
 
     def _versions(self, simulation):
         import numba
 
         return {
-            "case_name": self.name, "ranks": self.comm.size, "threads": numba.get_num_threads(),
-            "host": platform.node(), "warnings": list(self.case.warnings()),
-            "kernel": variant.chosen(), "processor": os.environ.get("NUMBA_CPU_NAME", "host"),
-            "versions": {"python": platform.python_version(), "mpi": self.comm.library,
-                         **{name: version(name) for name in ("numpy", "numba", "h5py", "mpi4py")}},
+            "case_name": self.name,
+            "ranks": self.comm.size,
+            "threads": numba.get_num_threads(),
+            "host": platform.node(),
+            "warnings": list(self.case.warnings()),
+            "kernel": variant.chosen(),
+            "processor": os.environ.get("NUMBA_CPU_NAME", "host"),
+            "versions": {
+                "python": platform.python_version(),
+                "mpi": self.comm.library,
+                **{name: version(name) for name in ("numpy", "numba", "h5py", "mpi4py")},
+            },
             "particles": self.particles,
         }
 

@@ -56,8 +56,10 @@ def find(out, until=None, kernel=None, wanted=None):
         _check_end(found, until, wanted is None)
         data["run"]["until"] = until
     if kernel is None and kernel_used is not None and kernel_used not in variant.possible():
-        raise InputError(f"{folder}: computed with kernel variant {kernel_used}, which this processor does not have; "
-                         f"with --kernel the run goes on to other last bits; possible: {', '.join(variant.possible())}")
+        raise InputError(
+            f"{folder}: computed with kernel variant {kernel_used}, which this processor does not have; "
+            f"with --kernel the run goes on to other last bits; possible: {', '.join(variant.possible())}"
+        )
     return Found(parse(data), found, name, kernel or kernel_used)
 
 
@@ -72,15 +74,18 @@ def _ends(run, until):
 def _check_wanted(folder, wanted, data):
     changed = _changed(_flat(wanted), _flat(data))
     if changed:
-        raise InputError(f"OUT = {folder}: is the run of another case, which differs in {', '.join(changed)}; give a "
-                         "changed case a folder of its own")
+        raise InputError(
+            f"OUT = {folder}: is the run of another case, which differs in {', '.join(changed)}; give a "
+            "changed case a folder of its own"
+        )
 
 
 def _check_end(found, until, refused):
     """Refuse an end before the checkpoint."""
     if found is not None and refused and until <= found.account["time"]:
-        raise InputError(f"--until = {until!r}: must be later than the checkpoint, which is at t = "
-                         f"{found.account['time']:g} s")
+        raise InputError(
+            f"--until = {until!r}: must be later than the checkpoint, which is at t = {found.account['time']:g} s"
+        )
 
 
 def _end_of(path, data):
@@ -113,16 +118,20 @@ def _newest(folder):
     found, broken = checkpoint.newest(folder)
     _warn(broken)
     if broken and found is None:
-        raise InputError(f"OUT = {folder}: holds no whole checkpoint; start again with `parsim run CASE -o {folder} "
-                         "--force`")
+        raise InputError(
+            f"OUT = {folder}: holds no whole checkpoint; start again with `parsim run CASE -o {folder} --force`"
+        )
     return found
 
 
 def _check_versions(found):
     """Warn of what goes on with other last bits."""
     wrote = found.account["versions"]
-    _warn(f"{found.path}: written with {name} {wrote[name]}, this is {now}; last bits may differ"
-          for name, now in variant.versions().items() if wrote[name] != now)
+    _warn(
+        f"{found.path}: written with {name} {wrote[name]}, this is {now}; last bits may differ"
+        for name, now in variant.versions().items()
+        if wrote[name] != now
+    )
 
 
 def _warn(lines):

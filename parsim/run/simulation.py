@@ -55,7 +55,7 @@ class Simulation:
 
     def snapshot(self):
         """All that a restart needs, before a step that rebuilds; called on all ranks together."""
-        lost, = self.domain.count(self.domain.lost)
+        (lost,) = self.domain.count(self.domain.lost)
         account = {"lost": lost, "uneven": list(self._uneven)}
         account |= {name: getattr(self, name) for name in _COUNTERS}
         return Snapshot(self.fluid, {name: part.kept() for name, part in self.solids.parts.items()}, account)
@@ -140,8 +140,10 @@ class Simulation:
         endless = np.array(grid.periodic) | ~np.isin(range(3), self.case.axes)
         low, high = np.where(endless, -np.inf, grid.low), np.where(endless, np.inf, grid.high)
         at, rows = self.bodies.take_out(low, high, self.time)
-        return [(self.step_count + 1, self.time, f"body {self.bodies.names[b]}", b, *row)
-                for b, row in zip(at, rows, strict=True)]
+        return [
+            (self.step_count + 1, self.time, f"body {self.bodies.names[b]}", b, *row)
+            for b, row in zip(at, rows, strict=True)
+        ]
 
     def _note_gone(self, left):
         """Collect, on rank 0, what the last rebuild has found outside the box."""

@@ -31,8 +31,12 @@ _CASE = {
     "bodies": [{"name": name, "shape": {"size": [0.03, 0.04, 0.02]}, "density": 600.0, "material": "wood",
                 "position": [x, 0.03, 0.05]} for name, x in (("one", 0.03), ("two", 0.0605))],
 }  # fmt: skip
-_PERIODIC = {"box": {"max": [0.2, 0.06, 0.1], "faces": {"y_min": "periodic", "y_max": "periodic"}}, "gate": None,
-             "bodies": [], "output": {"gauges": [{"name": "one", "x": 0.05}]}}
+_PERIODIC = {
+    "box": {"max": [0.2, 0.06, 0.1], "faces": {"y_min": "periodic", "y_max": "periodic"}},
+    "gate": None,
+    "bodies": [],
+    "output": {"gauges": [{"name": "one", "x": 0.05}]},
+}
 
 
 def prepare():
@@ -48,8 +52,10 @@ def prepare():
     variant.apply()
     folder = os.environ.get("NUMBA_CACHE_DIR", "")
     if Path(folder).name != variant.code():
-        raise InputError(f"kernel = {os.environ[variant.NAME]}: this process has loaded numba with other settings "
-                         "already; start parsim in a process of its own")
+        raise InputError(
+            f"kernel = {os.environ[variant.NAME]}: this process has loaded numba with other settings "
+            "already; start parsim in a process of its own"
+        )
     mark = variant.mark(folder)
     if _whole(mark):
         return
@@ -80,8 +86,13 @@ def _compile_alone(mark):
         path.unlink()
     environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
     # in a process group of its own: mpirun sends signals to all of a rank's
-    subprocess.run([sys.executable, "-P", "-m", "parsim.run.warm"], env=environment, check=True, process_group=0,
-                   preexec_fn=mpirun.die_with_parent)
+    subprocess.run(
+        [sys.executable, "-P", "-m", "parsim.run.warm"],
+        env=environment,
+        check=True,
+        process_group=0,
+        preexec_fn=mpirun.die_with_parent,
+    )
     sums = {str(path.relative_to(mark.parent)): _sum(path) for path in _code(mark.parent)}
     draft = mark.with_suffix(f".{os.getpid()}")
     draft.write_text(json.dumps(sums), encoding="utf-8")

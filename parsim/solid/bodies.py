@@ -6,9 +6,21 @@ import numpy as np
 
 from parsim.geometry.rotation import free_turn, from_angles, matrices, matrix, scaled
 from parsim.machine.jit import kernel
+from parsim.solid.shapes.box import inertia_of_box, volume_of_box
 
-_KEPT = ("position", "quaternion", "velocity", "spin", "acceleration", "angular_acceleration", "water_load",
-         "contact_load", "gravity_load", "film", "left")
+_KEPT = (
+    "position",
+    "quaternion",
+    "velocity",
+    "spin",
+    "acceleration",
+    "angular_acceleration",
+    "water_load",
+    "contact_load",
+    "gravity_load",
+    "film",
+    "left",
+)
 _FAR = 1e6  # m that what has been taken out is moved on, out of reach of everything
 _SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners of a box
 _QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
@@ -26,8 +38,21 @@ class Bodies:
     each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out, inf before.
     """
 
-    def __init__(self, half, mass, position, quaternion=None, velocity=0.0, spin=0.0, *, names=None, material=0,
-                 fixed=False, released=-math.inf, planar=False):
+    def __init__(
+        self,
+        half,
+        mass,
+        position,
+        quaternion=None,
+        velocity=0.0,
+        spin=0.0,
+        *,
+        names=None,
+        material=0,
+        fixed=False,
+        released=-math.inf,
+        planar=False,
+    ):
         self.half = np.array(half, float).reshape(-1, 3)
         count, self.planar = len(self.half), bool(planar)
         self.names = list(names) if names is not None else [f"body{b}" for b in range(count)]
@@ -79,8 +104,16 @@ class Bodies:
         for b in at:
             axis = int(np.argmax(below[b] | above[b]))
             self.position[b, axis] += math.copysign(_FAR, -1.0 if below[b, axis] else 1.0)
-            for of in (self.velocity, self.spin, self.acceleration, self.angular_acceleration, self.water_load,
-                       self.contact_load, self.gravity_load, self.film):
+            for of in (
+                self.velocity,
+                self.spin,
+                self.acceleration,
+                self.angular_acceleration,
+                self.water_load,
+                self.contact_load,
+                self.gravity_load,
+                self.film,
+            ):
                 of[b] = 0.0
         self.left[at] = time
         return at, rows
@@ -103,8 +136,9 @@ class Bodies:
         Also the body of each quad, (6 n,).
         """
         turn, there = matrices(self.quaternion), np.flatnonzero(~self.gone)
-        points = np.array([self.position[b] + (_SIGNS * self.half[b] * turn[b][:, None]).sum(-1).T
-                           for b in there]).reshape(-1, 3)
+        points = np.array(
+            [self.position[b] + (_SIGNS * self.half[b] * turn[b][:, None]).sum(-1).T for b in there]
+        ).reshape(-1, 3)
         quads = (_QUADS + 8 * np.arange(there.size)[:, None, None]).reshape(-1, 4)
         return points, quads, np.repeat(there, 6)
 
@@ -127,8 +161,10 @@ class Bodies:
         return self.names[int(np.argmax(speeds))], float(np.max(speeds))
 
     def _speeds(self):
-        return [largest_speed(*(each[b : b + 1] for each in (self.radius, self.velocity, self.spin)))
-                for b in range(len(self))]
+        return [
+            largest_speed(*(each[b : b + 1] for each in (self.radius, self.velocity, self.spin)))
+            for b in range(len(self))
+        ]
 
     def kinetic_energy(self):
         """Kinetic energy of all bodies, J (2D: per metre of width)."""
@@ -136,8 +172,12 @@ class Bodies:
 
     def potential_energy(self, gravity):
         """Potential energy of all bodies in `gravity` (3,), m/s2; zero at the origin; J."""
-        return -math.fsum(m * g * x for m, at, gone in zip(self.mass, self.position, self.gone, strict=True) if not gone
-                          for g, x in zip(gravity, at, strict=True))
+        return -math.fsum(
+            m * g * x
+            for m, at, gone in zip(self.mass, self.position, self.gone, strict=True)
+            if not gone
+            for g, x in zip(gravity, at, strict=True)
+        )
 
 
 def from_case(case):
@@ -156,17 +196,6 @@ def from_case(case):
         released=[-math.inf if b.released is None else b.released for b in bodies],
         planar=case.dimensions == 2,
     )
-
-
-def volume_of_box(half):
-    """Volumes (nb,), m3, of boxes of half edges `half` (nb, 3)."""
-    return 8.0 * half[:, 0] * half[:, 1] * half[:, 2]
-
-
-def inertia_of_box(half, mass):
-    """Principal moments (nb, 3), kg m2, of boxes of half edges (nb, 3) and mass (nb,)."""
-    square = half * half
-    return np.stack([mass / 3.0 * (square[:, (a + 1) % 3] + square[:, (a + 2) % 3]) for a in range(3)], axis=-1)
 
 
 def _column(value, count, kind=float):

@@ -68,8 +68,9 @@ class Contacts:
         """
         bodies.water_load[:] = water_load
         number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
-        self.count, self.steps, lost, work = advance(self._table, self._touch(), number, dt, reach,
-                                                     self._steps_per_contact, self._state)
+        self.count, self.steps, lost, work = advance(
+            self._table, self._touch(), number, dt, reach, self._steps_per_contact, self._state
+        )
         self.dissipated, self.gate_work, self._time = self.dissipated + lost, self.gate_work + work, time + dt
         self._remember(number, slots)
         finish(self._table, dt, _pose(bodies), bodies.acceleration, bodies.angular_acceleration, bodies.contact_load)
@@ -84,8 +85,14 @@ class Contacts:
     def kept(self):
         """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
         totals = np.array([self.dissipated, self.gate_work, self._time, *self._state])
-        return {"key": self._key.copy(), "element": self._element.copy(), "stretch": self._stretch.copy(),
-                "pair": self._pair.copy(), "stored": self._stored.copy(), "totals": totals}
+        return {
+            "key": self._key.copy(),
+            "element": self._element.copy(),
+            "stretch": self._stretch.copy(),
+            "pair": self._pair.copy(),
+            "stored": self._stored.copy(),
+            "totals": totals,
+        }
 
     def restore(self, kept):
         """Go on from what `kept` returned."""
@@ -107,8 +114,9 @@ class Contacts:
         return number, self._list_slots(number, reach), reach
 
     def _touch(self):
-        return Touch(self._elements, self._walls, self._law, self._pairs, self._shift, self._marks, self._slots,
-                     self._tanks)
+        return Touch(
+            self._elements, self._walls, self._law, self._pairs, self._shift, self._marks, self._slots, self._tanks
+        )
 
     def _list_pairs(self, planar, dt):
         place = self._table[:-1, table.POSITION].copy()
@@ -152,9 +160,9 @@ def _pose(bodies):
 
 
 def _depth(case, bodies):
-    """Depth of the elastic layer, m: `foundation_depth`, else half the thinnest body."""
+    """Depth of the elastic layer, m: that of the law, else half the thinnest body."""
     used = [0, 2] if bodies.planar else [0, 1, 2]
-    return case.contacts.foundation_depth or (float(bodies.half[:, used].min()) if len(bodies) else 1.0)
+    return case.contacts.law.depth or (float(bodies.half[:, used].min()) if len(bodies) else 1.0)
 
 
 def _table(bodies, cell, case, gate):

@@ -99,9 +99,7 @@ def _sum(touch, first, last, n, motion, lapse, law):
         s, age = (0.0, 0.0, 0.0), 0.0
         if marks[slot, TOUCHING]:
             s, age = three(slots, slot, STRETCH), lapse
-        slip, s, energy = friction_force(
-            s, n, v, age, mu * normal, TANGENTIAL * stiffness * area, tangential * area
-        )
+        slip, s, energy = friction_force(s, n, v, age, mu * normal, TANGENTIAL * stiffness * area, tangential * area)
         slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
         marks[slot, TOUCHING] = 1
         count, stored, pressed = count + 1, stored + energy, pressed + 0.5 * elastic * depth

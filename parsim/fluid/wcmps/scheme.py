@@ -99,8 +99,16 @@ class WCMPS:
     def _press(self, p, near):
         """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
-            sweeps.boundary_pressure(near.boundary, near.lists, p.body, p.place, p.acceleration,
-                                     self.lattice.weight, (*self.gravity, self.density), p.p)
+            sweeps.boundary_pressure(
+                near.boundary,
+                near.lists,
+                p.body,
+                p.place,
+                p.acceleration,
+                self.lattice.weight,
+                (*self.gravity, self.density),
+                p.p,
+            )
 
     def _accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
@@ -115,8 +123,9 @@ class WCMPS:
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
         with self.timers("momentum"):
-            sweeps.momentum(at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration,
-                            around)
+            sweeps.momentum(
+                at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration, around
+            )
 
     def _react(self, p, near, at, dt):
         """Forces of the water on the samples `at`, N: (samples, 3), and how they depend on accelerations.
@@ -125,8 +134,7 @@ class WCMPS:
         """
         forces, count = self._forces(dt), at.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
-        sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces,
-                        out)
+        sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
         return self.mass * out.force, out.lever, self.mass * out.response
 
     def extremes(self, p, near, start):
@@ -159,12 +167,27 @@ class WCMPS:
         lattice = self.lattice
         spread = self.diffusion * self.sound**2 * self._passage(speed) * self._laplacian
         slope = tuple(component * self._steepness for component in self._down)
-        growth = tables.Growth(lattice.number, self._gradient, spread, *slope,
-                               _CROWD / lattice.spacing, _CLOSE * lattice.spacing, float(lattice.dimensions))
+        growth = tables.Growth(
+            lattice.number,
+            self._gradient,
+            spread,
+            *slope,
+            _CROWD / lattice.spacing,
+            _CLOSE * lattice.spacing,
+            float(lattice.dimensions),
+        )
         out = tables.Change(p.rate, _shifts(p), p.vectors(TWICE_VISCOUS), isotropy(p))
         with self.timers("continuity"):
-            sweeps.continuity(at, near.lists, p.kinematics, tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS),
-                              lattice.weight, growth, out)
+            sweeps.continuity(
+                at,
+                near.lists,
+                p.kinematics,
+                tables.Density(p.n, p.scale, p.body),
+                p.vectors(VISCOUS),
+                lattice.weight,
+                growth,
+                out,
+            )
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice
@@ -173,8 +196,16 @@ class WCMPS:
         at, lists, place, n0 = near.fluid, near.lists, p.place, lattice.number
         surface.clamp(at, p.surface, n0, self.loosest, p.n)
         surface.mark(at, lists, place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
-        pulled = recovery.Recovery(lattice.radius**2, (_BESIDE * lattice.spacing) ** 2, n0, lattice.own,
-                                   self._whole, lattice.cut, *self._down, self.recovery * dt)
+        pulled = recovery.Recovery(
+            lattice.radius**2,
+            (_BESIDE * lattice.spacing) ** 2,
+            n0,
+            lattice.own,
+            self._whole,
+            lattice.cut,
+            *self._down,
+            self.recovery * dt,
+        )
         recovery.recover(at, lists, place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, p.n)
         shifted = shifting.Shifting(factor, _LONGEST_SHIFT * lattice.spacing, *self._down, n0 * self._steepness)
         shifting.shift(at, p.surface, p.vectors(NORMAL), shifted, _shifts(p), p.n)
@@ -197,8 +228,16 @@ class WCMPS:
         return 2.0 * self.lattice.dimensions * (self.lattice.dimensions + 2) / self.lattice.number
 
     def _forces(self, dt):
-        return tables.Forces(self.lattice.own, self._whole, self.close2, self._push,
-                             self.viscosity * self._viscous, 0.5 * (1.0 + self.restitution) / dt, dt, self.density)
+        return tables.Forces(
+            self.lattice.own,
+            self._whole,
+            self.close2,
+            self._push,
+            self.viscosity * self._viscous,
+            0.5 * (1.0 + self.restitution) / dt,
+            dt,
+            self.density,
+        )
 
 
 def _pressures(p):

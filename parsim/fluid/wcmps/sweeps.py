@@ -268,7 +268,8 @@ def continuity(at, lists, kinematics, density, viscous, weight, growth, out):
             sy += f * gy
             sz += f * gz
         rate[i] = spread * diffusion - widening * divergence
-        txx[i], txy[i], txz[i], tyz[i], tzz[i] = isotropic(mxx, mxy, mxz, myy, myz, mzz, dimensions,
-                                                                 (filled / n0 - _PART) / (_FULL - _PART))
+        txx[i], txy[i], txz[i], tyz[i], tzz[i] = isotropic(
+            mxx, mxy, mxz, myy, myz, mzz, dimensions, (filled / n0 - _PART) / (_FULL - _PART)
+        )
         ax[i], ay[i], az[i] = sx, sy, sz
         ex[i], ey[i], ez[i] = lx, ly, lz

@@ -10,10 +10,16 @@ from parsim.report.scene import body_colours
 
 def parts(page):
     """The curves; the table stands with what is published."""
-    return section("Trajectories of the bodies", page.figure(
-        "trajectories", trajectories(page.run), "Curves of x and z of each body's centre over time.",
-        "X is the position of a block's centre, not its displacement. Squares with bars: the experiments' spread "
-        "at the quoted time; crosses: the published model."))  # fmt: skip
+    return section(
+        "Trajectories of the bodies",
+        page.figure(
+            "trajectories",
+            trajectories(page.run),
+            "Curves of x and z of each body's centre over time.",
+            "X is the position of a block's centre, not its displacement. Squares with bars: the experiments' spread "
+            "at the quoted time; crosses: the published model.",
+        ),
+    )
 
 
 def body_tracks(run):
@@ -24,8 +30,9 @@ def body_tracks(run):
     written = set(series["body"].tolist())
     return {
         name: {key: values[series["body"] == name] for key, values in series.items()}
-        for name in run.body_names if name in written
-    }  # fmt: skip
+        for name in run.body_names
+        if name in written
+    }
 
 
 def compared_until(run):
@@ -58,8 +65,11 @@ def draught(run, name, track):
         return None
     row, body = before[-1], run.case["bodies"][run.body_names.index(name)]
     x, y = track["x"][row], track["y"][row]
-    levels = [fill["max"][2] for fill in run.case["water"].get("fill", [])
-              if fill["min"][0] <= x <= fill["max"][0] and fill["min"][1] <= y <= fill["max"][1]]  # fmt: skip
+    levels = [
+        fill["max"][2]
+        for fill in run.case["water"].get("fill", [])
+        if fill["min"][0] <= x <= fill["max"][0] and fill["min"][1] <= y <= fill["max"][1]
+    ]
     w, a, b, c = (track[f"q{i}"][row] for i in range(4))
     # the third row of the rotation matrix: how far each half size reaches down
     reach = np.abs([2 * (a * c - w * b), 2 * (b * c + w * a), 1 - 2 * (a * a + b * b)])
@@ -83,8 +93,14 @@ def told(run):
         places = [at_time(track, "x", time) for time in times]
         best = largest_x(run, track) or (None, None)
         rows.append((name, draught(run, name, track), archimedes_draught(run, name), *places, *best))
-    titles = ("body", "draught before release (m)", "by Archimedes (m)", *(f"X at {time:g} s (m)" for time in times),
-              f"largest X to {end:.3g} s (m)", "when (s)")  # fmt: skip
+    titles = (
+        "body",
+        "draught before release (m)",
+        "by Archimedes (m)",
+        *(f"X at {time:g} s (m)" for time in times),
+        f"largest X to {end:.3g} s (m)",
+        "when (s)",
+    )
     return table(titles, rows)
 
 
@@ -116,8 +132,18 @@ def _published_x(axes, run, colours):
         if number.low is not None and number.high is not None:
             middle, half = (number.low + number.high) / 2, (number.high - number.low) / 2
             label = f"{number.block} {number.quantity}, experiments"
-            axes.errorbar(number.time, middle, half, fmt="s", capsize=6, elinewidth=4, markersize=6,
-                          markeredgecolor=INK, label=label, **style)  # fmt: skip
+            axes.errorbar(
+                number.time,
+                middle,
+                half,
+                fmt="s",
+                capsize=6,
+                elinewidth=4,
+                markersize=6,
+                markeredgecolor=INK,
+                label=label,
+                **style,
+            )
         if number.model is not None:
             label = f"{number.block} {number.quantity}, published model"
             axes.plot(number.time, number.model, "X", markersize=9, markeredgecolor=INK, label=label, **style)

@@ -11,9 +11,15 @@ LEAKS = ("in_walls", "in_bodies", "in_gate", "lost")
 
 def parts(page):
     """Their curves."""
-    return section("Volume and particles", page.figure(
-        "volume", volume(page.run), "Curves of the water's volume and of misplaced particles.",
-        "Volume against its first value; particles found in walls, bodies or gate, and lost: all should stay 0."))
+    return section(
+        "Volume and particles",
+        page.figure(
+            "volume",
+            volume(page.run),
+            "Curves of the water's volume and of misplaced particles.",
+            "Volume against its first value; particles found in walls, bodies or gate, and lost: all should stay 0.",
+        ),
+    )
 
 
 def lines(run):

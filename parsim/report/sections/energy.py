@@ -11,10 +11,16 @@ NOT_ENERGY = {"step", "time", "dt"}
 
 def parts(page):
     """Its curves."""
-    return section("Energy", page.figure(
-        "energy", energy(page.run), "Curves of the parts of the energy over time.",
-        "All parts of the energy and their sum; below, what was created: positive is energy from nothing, "
-        "negative is dissipation. W is the work done from outside."))  # fmt: skip
+    return section(
+        "Energy",
+        page.figure(
+            "energy",
+            energy(page.run),
+            "Curves of the parts of the energy over time.",
+            "All parts of the energy and their sum; below, what was created: positive is energy from nothing, "
+            "negative is dissipation. W is the work done from outside.",
+        ),
+    )
 
 
 def lines(run):

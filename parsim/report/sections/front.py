@@ -7,9 +7,15 @@ from parsim.report.page import section
 
 def parts(page):
     """The curve of the front."""
-    return section("Front", page.figure(
-        "front", front(page.run), "Curve of the front's position over time.",
-        "Front of the connected water; it has arrived when two spacings from the end wall (black)."))  # fmt: skip
+    return section(
+        "Front",
+        page.figure(
+            "front",
+            front(page.run),
+            "Curve of the front's position over time.",
+            "Front of the connected water; it has arrived when two spacings from the end wall (black).",
+        ),
+    )
 
 
 def lines(run):
@@ -42,8 +48,13 @@ def front(run):
         axes.axvline(arrival, color=WATER, linestyle="--", label=f"arrives at {arrival:.3f} s")
     for number in published(run):
         if number.quantity.startswith("front") and number.low is not None:
-            axes.axvspan(number.low - 0.003, number.high + 0.003, color="#e07b39", alpha=0.6,
-                         label=f"published: {number.low:g} s")  # fmt: skip
+            axes.axvspan(
+                number.low - 0.003,
+                number.high + 0.003,
+                color="#e07b39",
+                alpha=0.6,
+                label=f"published: {number.low:g} s",
+            )
     axes.set_xlabel("time (s)")
     axes.set_ylabel("front x (m)")
     if axes.get_legend_handles_labels()[0]:

@@ -7,9 +7,15 @@ from parsim.report.page import section
 
 def parts(page):
     """Their curves."""
-    return section("Gauges", page.figure(
-        "gauges", gauges(page.run), "Curves of water level at the gauges.",
-        "Water level at the gauges; gaps are dry."))
+    return section(
+        "Gauges",
+        page.figure(
+            "gauges",
+            gauges(page.run),
+            "Curves of water level at the gauges.",
+            "Water level at the gauges; gaps are dry.",
+        ),
+    )
 
 
 def gauges(run):

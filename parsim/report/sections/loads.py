@@ -7,9 +7,15 @@ from parsim.report.page import section
 
 def parts(page):
     """Its curves."""
-    return section("Loads on the bodies", page.figure(
-        "loads", loads(page.run), "Curves of forces on each body.",
-        "Forces along the flow (fx) and upward (fz), as means over a step."))
+    return section(
+        "Loads on the bodies",
+        page.figure(
+            "loads",
+            loads(page.run),
+            "Curves of forces on each body.",
+            "Forces along the flow (fx) and upward (fz), as means over a step.",
+        ),
+    )
 
 
 def loads(run):

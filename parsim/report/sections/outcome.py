@@ -13,8 +13,10 @@ def lines(run):
     info = run.info
     told = [f"Status: {info.get('status', 'unknown')}."]
     if "steps" in info and "time" in info:
-        told.append(f"Simulated to {info['time']:.4g} s in {info['steps']} steps: {info.get('wall_s', 0):.4g} s of "
-                    f"wall time on {info.get('ranks', '?')} ranks x {info.get('threads', '?')} threads.")  # fmt: skip
+        told.append(
+            f"Simulated to {info['time']:.4g} s in {info['steps']} steps: {info.get('wall_s', 0):.4g} s of "
+            f"wall time on {info.get('ranks', '?')} ranks x {info.get('threads', '?')} threads."
+        )
     if particles := info.get("particles"):
         told.append("Particles: " + ", ".join(f"{count} {kind}" for kind, count in particles.items()) + ".")
     if info.get("warnings"):

@@ -9,20 +9,30 @@ from parsim.report.pictures import snapshot
 def parts(page):
     """The pictures at `report.snapshots`, and the film."""
     times = page.run.times("water")
-    return "".join((section("Pictures", *(_snapshot(page, frame, times[frame]) for frame in page.frames)),
-                    section("Animation", _film(page, page.film, times))))
+    return "".join(
+        (
+            section("Pictures", *(_snapshot(page, frame, times[frame]) for frame in page.frames)),
+            section("Animation", _film(page, page.film, times)),
+        )
+    )
 
 
 def _snapshot(page, frame, time):
     name, moment = f"snapshot_{frame:06d}", f"t = {time:.3f} s"
     if page.run.case["dimensions"] == 2:
         return page.figure(
-            name, plane.snapshot(page.run, frame), f"Particles coloured by pressure and speed, {moment}.",
-            f"{moment}: pressure and speed of the water, bodies in warm colours.")  # fmt: skip
+            name,
+            plane.snapshot(page.run, frame),
+            f"Particles coloured by pressure and speed, {moment}.",
+            f"{moment}: pressure and speed of the water, bodies in warm colours.",
+        )
     return page.figure(
-        name, snapshot(page.gallery, frame), f"Water, gate and named bodies at {moment}, oblique, front and top view.",
+        name,
+        snapshot(page.gallery, frame),
+        f"Water, gate and named bodies at {moment}, oblique, front and top view.",
         f"{moment}: from the side and above, from the front (flow to the right), and from above. "
-        "Look at where the bodies ride on the wave, and the height of the gate (grey).")  # fmt: skip
+        "Look at where the bodies ride on the wave, and the height of the gate (grey).",
+    )
 
 
 def _film(page, frames, times):
@@ -32,5 +42,10 @@ def _film(page, frames, times):
     slower = (len(frames) - 1) / rate(len(frames)) / max(times[frames[-1]] - times[frames[0]], 1e-12)
     span = f"{times[frames[0]]:.2f} to {times[frames[-1]]:.2f} s"
     pace = f"{slower:.1f} times slower than real" if slower >= 1 else f"{1 / slower:.1f} times faster than real"
-    return page.keep("animation", suffix, data, f"Animation of bodies and water from {span}.",
-                       f"{span}, {len(frames)} frames, {pace}.")  # fmt: skip
+    return page.keep(
+        "animation",
+        suffix,
+        data,
+        f"Animation of bodies and water from {span}.",
+        f"{span}, {len(frames)} frames, {pace}.",
+    )

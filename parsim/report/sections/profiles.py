@@ -13,18 +13,26 @@ DETACHED = 3
 def parts(page):
     """The profiles at `report.profiles`."""
     frames = moments(page.run.times("water"), asked(page.run, "profiles", ()))
-    return section("Water profile", page.figure(
-        "profiles", profiles(page.run, frames) if frames else None, "Surface height along the tank at some times.",
-        "Highest connected water across the tank, splash left out, in the frames nearest to the quoted times; "
-        "bodies in their places. The line is the free surface and stops where bodies cover it."))  # fmt: skip
+    return section(
+        "Water profile",
+        page.figure(
+            "profiles",
+            profiles(page.run, frames) if frames else None,
+            "Surface height along the tank at some times.",
+            "Highest connected water across the tank, splash left out, in the frames nearest to the quoted times; "
+            "bodies in their places. The line is the free surface and stops where bodies cover it.",
+        ),
+    )
 
 
 def covered(position, scene):
     """Which of the points (n, 3) have a body over them: bool (n,)."""
     found = np.zeros(len(position), bool)
     for face in scene.points[scene.quads]:
-        near = np.flatnonzero(((position[:, :2] >= face[:, :2].min(0)) & (position[:, :2] <= face[:, :2].max(0))).all(1)
-                              & (position[:, 2] < face[:, 2].max()))
+        near = np.flatnonzero(
+            ((position[:, :2] >= face[:, :2].min(0)) & (position[:, :2] <= face[:, :2].max(0))).all(1)
+            & (position[:, 2] < face[:, 2].max())
+        )
         edge, to = np.roll(face, -1, 0) - face, position[near, None, :2] - face[None, :, :2]
         side = edge[:, 0] * to[..., 1] - edge[:, 1] * to[..., 0]
         found[near] |= (side >= 0).all(1) | (side <= 0).all(1)

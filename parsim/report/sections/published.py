@@ -25,7 +25,17 @@ def compared(run):
         spread = [f"{end:g}" for end in dict.fromkeys((number.low, number.high)) if end is not None]
         short = number.quantity == "max X" and number.time is not None and end < number.time
         quantity = f"{number.quantity} (here to {end:.3g} s)" if short else number.quantity
-        rows.append((quantity, number.block or "-", number.unit, value, " to ".join(spread) or "not quoted",
-                     number.model, measures.verdict(value, number), number.source))  # fmt: skip
+        rows.append(
+            (
+                quantity,
+                number.block or "-",
+                number.unit,
+                value,
+                " to ".join(spread) or "not quoted",
+                number.model,
+                measures.verdict(value, number),
+                number.source,
+            )
+        )
     titles = ("quantity", "body", "unit", "here", "experiments", "published model", "against the experiments", "source")
     return table(titles, rows)

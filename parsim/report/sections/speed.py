@@ -10,9 +10,16 @@ LIMIT_NAMES = {"wall_s": "wall time (s)", "steps": "steps", "ranks": "ranks", "t
 
 def parts(page):
     """Rates, and the phases of the solver."""
-    return section("Speed", table(("quantity", "value"), speed(page.run)), page.figure(
-        "phases", phases(page.run), "Bars: seconds in each phase of the solver.",
-        "Wall time by phase of the solver, with shares."))
+    return section(
+        "Speed",
+        table(("quantity", "value"), speed(page.run)),
+        page.figure(
+            "phases",
+            phases(page.run),
+            "Bars: seconds in each phase of the solver.",
+            "Wall time by phase of the solver, with shares.",
+        ),
+    )
 
 
 def speed(run):

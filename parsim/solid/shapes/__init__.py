@@ -1,1 +1,6 @@
-"""Shapes of bodies."""
+"""Shapes of bodies: what exists is listed here."""
+
+from parsim.case.types import choice
+from parsim.solid.shapes.box import BoxShape
+
+Shape = choice(BoxShape)

@@ -1,12 +1,41 @@
-"""Contact elements: the points on the surface of a body that feel what they touch, each with its share of area."""
+"""A box: its table in a case, its volume and moments, and its contact elements."""
 
 import math
+from typing import Literal
 
 import numpy as np
+from pydantic import Field
+
+from parsim.case.types import Size, Table
+
+
+class BoxShape(Table):
+    """A box about its centre."""
+
+    kind: Literal["box"] = Field("box", description="a box")
+    size: Size = Field(description="edge lengths (x, y, z) before turning, m; in 2D y = 1")
+
+    @property
+    def volume(self):
+        """Volume, m3."""
+        return math.prod(self.size)
+
+
+def volume_of_box(half):
+    """Volumes (nb,), m3, of boxes of half edges `half` (nb, 3)."""
+    return 8.0 * half[:, 0] * half[:, 1] * half[:, 2]
+
+
+def inertia_of_box(half, mass):
+    """Principal moments (nb, 3), kg m2, of boxes of half edges (nb, 3) and mass (nb,)."""
+    square = half * half
+    return np.stack([mass / 3.0 * (square[:, (a + 1) % 3] + square[:, (a + 2) % 3]) for a in range(3)], axis=-1)
 
 
 def elements_of(bodies, spacing=None):
-    """Elements on all bodies, corners and edges included, at most `spacing`, m, apart; in 2D on the outline.
+    """Contact elements, the points that feel what a body touches, each with its share of area, on all bodies.
+
+    They lie on corners, on edges, and between at most `spacing`, m, apart; in 2D on the outline.
 
     Returns first (nb + 1,): the elements of body b are rows first[b] to first[b + 1]; elements (n, 6): point, m, body
     frame, and its share of the face along each body axis, m2, signed as the face looks: the area seen along a
