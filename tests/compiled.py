@@ -1,7 +1,7 @@
-"""Runs cases for a few steps, in a process that has compiled nothing, and prints which kernels each has compiled.
+"""Runs cases for some steps, in a process that has compiled nothing, and prints which kernels each has compiled.
 
-Reads a JSON list of cases from standard input, each a dict as of a case file or a list [file, changes]; prints a JSON
-list, for each case the names of its kernels that numba's cache has missed.
+Takes the number of steps. Reads a JSON list of cases from standard input, each a dict as of a case file or a list
+[file, changes]; prints a JSON list, for each case the names of its kernels that numba's cache has missed.
 """
 
 import json
@@ -16,13 +16,11 @@ from parsim.run.simulation import Simulation
 
 from numba.core.dispatcher import Dispatcher  # isort: skip (the settings of numba must come first)
 
-STEPS = 3
 
-
-def run(case):
-    """Run and measure a case for a few steps, then go on from a snapshot and over t = 0."""
+def run(case, steps):
+    """Run and measure a case for some steps, then go on from a snapshot and over t = 0."""
     simulation = Simulation(case, Comm())
-    for _ in range(STEPS):
+    for _ in range(steps):
         simulation.step()
     rows_now(case, simulation)
     simulation = Simulation(case, Comm(), simulation.snapshot())
@@ -39,16 +37,16 @@ def missed():
     }
 
 
-def main(wanted):
+def main(wanted, steps):
     """The kernels that each case has compiled: a list of lists of names."""
     told = []
     for case in wanted:
         before = missed()
-        run(cases.parse(case) if isinstance(case, dict) else load(*case))
+        run(cases.parse(case) if isinstance(case, dict) else load(*case), steps)
         told.append([name for name, count in missed().items() if count > before.get(name, 0)])
     return told
 
 
 if __name__ == "__main__":
     warm.prepare()
-    print(json.dumps(main(json.load(sys.stdin))))
+    print(json.dumps(main(json.load(sys.stdin), int(sys.argv[1]))))

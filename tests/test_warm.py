@@ -17,9 +17,9 @@ COARSE = {"ice_release": 0.01}  # m, for a first look
 DRAWN = 40
 
 
-def compiled(cases):
-    """The kernels that each case compiles once the cache is whole: a list of lists of names."""
-    line = [sys.executable, Path(__file__).with_name("compiled.py")]
+def compiled(cases, steps=3):
+    """The kernels that each case compiles in so many steps once the cache is whole: a list of lists of names."""
+    line = [sys.executable, Path(__file__).with_name("compiled.py"), str(steps)]
     done = subprocess.run(line, input=json.dumps(cases), capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout.splitlines()[-1])
@@ -95,4 +95,4 @@ def test_no_example_compiles_anything():
 @pytest.mark.slow
 @pytest.mark.parametrize("path", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_no_example_compiles_anything_as_it_is(path):
-    assert compiled([[str(path), []]]) == [[]]
+    assert compiled([[str(path), []]], 50) == [[]]

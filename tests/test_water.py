@@ -8,6 +8,7 @@ from clouds import outside_box
 
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
+from parsim.fluid.wcmps.energy import elastic
 from parsim.geometry.nearby import near_points
 from parsim.geometry.rotation import from_angles, matrices
 from parsim.observe.energy import energies
@@ -111,13 +112,19 @@ def test_momentum_stays_in_a_periodic_box(shifting):
 def test_the_elastic_energy_is_the_work_of_the_pressure():
     n0, sound2, mass = 20.0, 900.0, 1.7
     s = np.array([0.97, 0.999, 1.0, 1.003, 1.02])
-    zero, out, gravity = np.zeros(5), np.zeros((5, 3)), (0.0, 0.0, -9.81)
-    flow = Kinematics(Vectors(zero, zero, zero + 2.0), Vectors(zero + 3.0, zero, zero))
-    energies(np.arange(5), flow, n0 * s, (mass, n0, sound2), gravity, out)
-    for row, end in zip(out, s, strict=True):
+    out = np.zeros(5)
+    elastic(np.arange(5), n0 * s, mass, n0, sound2, out)
+    for energy, end in zip(out, s, strict=True):
         middles = 1.0 + (end - 1.0) * (np.arange(2000) + 0.5) / 2000
         work = (sound2 / 7.0 * (middles**7 - 1.0) / middles).mean() * (end - 1.0)  # p / (rho0 s) over s
-        assert row == pytest.approx([4.5 * mass, 19.62 * mass, mass * work], rel=1e-6, abs=1e-12)
+        assert energy == pytest.approx(mass * work, rel=1e-6, abs=1e-12)
+
+
+def test_energies_of_water_that_moves_at_a_height():
+    zero, out = np.zeros(2), np.zeros((2, 3))
+    flow = Kinematics(Vectors(zero, zero, zero + 2.0), Vectors(zero + 3.0, zero, zero))
+    energies(np.arange(2), flow, 1.7, (0.0, 0.0, -9.81), out)
+    assert out[1, :2] == pytest.approx([4.5 * 1.7, 19.62 * 1.7])
 
 
 def test_the_budget_counts_the_work_of_the_gate_on_the_water():

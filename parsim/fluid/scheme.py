@@ -44,10 +44,14 @@ class Solids(Protocol):
 class Scheme(Protocol):
     """One way to move the water. `step` is one screen and reads like the method.
 
-    STATE: names of the fields whose values at the end of a step are needed of the neighbouring slabs.
+    STATE: names of the fields whose values at the end of a step are needed of the neighbouring slabs. lattice: a
+    `reference.Lattice`; mass of a particle, kg; sound, m/s: what nothing may be faster than.
     """
 
     STATE: tuple
+    lattice: object
+    mass: float
+    sound: float
 
     def at_rest(self, pressure):
         """Fields of water at rest at pressures (n,), Pa: name -> (n,)."""
@@ -57,3 +61,12 @@ class Scheme(Protocol):
 
     def step(self, flow, solids, time, dt):
         """Advance the water by dt, s, and with `solids` all that is in it."""
+
+    def extremes(self, p, near, start):
+        """Largest speed, m/s, of this rank's water, infinite when not finite, and largest distance from `start`, m."""
+
+    def compression(self, p, at):
+        """Density of the particles `at` over that of the water at no pressure, (n,)."""
+
+    def elastic(self, p, at):
+        """Elastic energy of the particles `at`, J, (n,)."""

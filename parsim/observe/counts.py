@@ -45,9 +45,8 @@ class Counts:
         misplaced(at, p.place, self._walls, bodies, gate, self._slack, count)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
         every = fluid + len(s.solids.walls) + len(s.solids.samples)
-        lattice = s.scheme.lattice
-        (full,) = s.domain.sum((1.0 / (p.n[at] / lattice.number))[:, None], 1.0)  # of m / rho, not of N
-        return [[fluid, s.active, every, *rest, float(full) * lattice.volume, int(s.bodies.gone.sum())]]
+        (full,) = s.domain.sum((1.0 / s.scheme.compression(p, at))[:, None], 1.0)  # of m / rho, not of N
+        return [[fluid, s.active, every, *rest, float(full) * s.scheme.lattice.volume, int(s.bodies.gone.sum())]]
 
 
 @kernel

@@ -1,7 +1,5 @@
 """Energy of water, bodies and contacts, and what the gate has done."""
 
-import math
-
 import numpy as np
 
 from parsim.case.scales import scales
@@ -32,8 +30,8 @@ class Energy:
     def rows(self, s):
         """See `Observer`."""
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 3))
-        constants = s.scheme.mass, s.scheme.lattice.number, s.scheme.sound**2
-        energies(at, p.kinematics, p.n, constants, self._gravity, out)
+        energies(at, p.kinematics, s.scheme.mass, self._gravity, out)
+        out[:, 2] = s.scheme.elastic(p, at)
         b, c = s.bodies, s.contacts
         parts = [
             *map(float, s.domain.sum(out, self._unit)),
@@ -45,20 +43,12 @@ class Energy:
 
 
 @kernel
-def energies(at, kinematics, n, water, gravity, out):
-    """Kinetic, potential and elastic energy, J, of each fluid particle `at`: out (n, 3).
-
-    Elastic: what the pair forces put into n, the integral of p / (rho0 s) over s = n / n0 of the state,
-    c0^2 / 7 ((s^7 - 1) / 7 - ln s). `water`: mass of a particle, kg, n0, c0^2, m2/s2; gravity (3,), m/s2.
-    """
+def energies(at, kinematics, mass, gravity, out):
+    """Kinetic and potential energy, J, of each fluid particle `at`, of `mass`, kg: out (n, 2 or more)."""
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
-    mass, n0, sound2 = water
     gx, gy, gz = gravity
     for row in range(at.size):
         i = at[row]
-        s = n[i] / n0
-        s2 = s * s
         out[row, 0] = 0.5 * mass * (u[i] * u[i] + v[i] * v[i] + w[i] * w[i])
         out[row, 1] = -mass * (gx * x[i] + gy * y[i] + gz * z[i])
-        out[row, 2] = mass * sound2 / 7.0 * ((s2 * s2 * s2 * s - 1.0) / 7.0 - math.log(s))

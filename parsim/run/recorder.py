@@ -172,7 +172,7 @@ class Recorder:
             np.stack([p.u[at], p.v[at], p.w[at]], 1),
             p.p[at],
             p.surface[at],
-            p.n[at] / simulation.scheme.lattice.number,
+            simulation.scheme.compression(p, at),
         ]
         self._stream(name, simulation.fluid_count, arrays, time, step)
         if self.main and len(simulation.bodies.mass):

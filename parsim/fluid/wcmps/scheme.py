@@ -12,7 +12,7 @@ import numpy as np
 
 from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
-from parsim.fluid.wcmps import sweeps, tables, updates
+from parsim.fluid.wcmps import energy, sweeps, tables, updates
 from parsim.fluid.wcmps.fields import ISOTROPY, NORMAL, TWICE_VISCOUS, VISCOUS, isotropy
 from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE, VELOCITY
@@ -72,6 +72,16 @@ class WCMPS:
     def at_rest(self, pressure):
         """Fields of water at rest at pressures (n,), Pa >= 0: its number density, by the inverse state."""
         return {"n": self.lattice.number * updates.seventh_roots(pressure / self.stiffness)}
+
+    def compression(self, p, at):
+        """Density of the particles `at` over that of the water at no pressure, (n,)."""
+        return p.n[at] / self.lattice.number
+
+    def elastic(self, p, at):
+        """Elastic energy of the particles `at`, J, (n,)."""
+        out = np.empty(at.size)
+        energy.elastic(at, p.n, self.mass, self.lattice.number, self.sound**2, out)
+        return out
 
     def step(self, flow, solids, time, dt):
         """One step: see the module. `STATE` is left to be refreshed."""
