@@ -33,13 +33,14 @@ def floor_samples(s):
     return floor, floor[np.argmin(middle)]
 
 
-@pytest.mark.parametrize("name", ["2d", "3d"])
-def test_still_water(name):
+@pytest.mark.parametrize(("name", "until"), [("2d", 20.0), ("3d", 5.0)])
+def test_still_water(name, until):
+    """In 2D eddies that last move the water, by 7e-6 of its potential energy: that misses the bar by seven times."""
     case = load(CASES / "still_water" / f"{name}.toml")
     s = Simulation(case, Comm())
     depth, l0 = case.depth, case.spacing
-    times, bottom, pressure, level = [], [], [], []
-    while s.time < case.run.until:
+    times, bottom, pressure, level, moving = [], [], [], [], []
+    while s.time < until:
         s.step()
         p = s.domain.particles
         if s.step_count == 1 or s.since == 1:
@@ -50,6 +51,8 @@ def test_still_water(name):
         bottom.append(p.p[floor].mean() / (9810.0 * (depth + l0 / 2)))
         pressure.append(p.p[sensor] / (9810.0 * (depth + l0 / 2)))
         level.append(2.0 * p.z[s.near.fluid].mean() / depth)
+        speeds = [component[s.near.fluid] for component in p.velocity]
+        moving.append(sum(float((speed**2).mean()) for speed in speeds) / (9.81 * depth))
     times, bottom, pressure, level = map(np.array, (times, bottom, pressure, level))
     window = max(int(0.2 * np.sqrt(depth / 9.81) / np.diff(times).mean()), 1)
     mean = np.convolve(pressure, np.ones(window) / window, "same")
@@ -65,10 +68,12 @@ def test_still_water(name):
         level_at_end=level[-1],
         level_drift=np.abs(level - level[0]).max(),
         level_off=np.abs(level - 1).max(),
+        kinetic_over_potential=max(moving),
     )
-    assert max(abs(a - 1) for a in averages) < 0.01
-    assert noise < 0.005
-    assert np.abs(level - 1).max() < 0.003 and np.abs(level - level[0]).max() < 0.003
+    assert max(abs(a - 1) for a in averages) < 0.005
+    assert noise < 0.001
+    assert np.abs(level - 1).max() < 0.001
+    assert max(moving) < 1e-6
 
 
 def test_half_dense_square_turns_to_45_degrees(tmp_path):
@@ -78,8 +83,8 @@ def test_half_dense_square_turns_to_45_degrees(tmp_path):
     tilt = np.degrees(2 * np.arctan2(bodies["q2"], bodies["q0"]))[late]
     height = bodies["z"][late].mean() - 0.5  # Archimedes: the centre lies in the water plane
     told(tilt=tilt.mean(), tilt_spread=tilt.std(), centre_above_water_in_spacings=height / 0.005)
-    assert abs(abs(tilt.mean()) - 45) < 3
-    assert abs(height) < 0.005 / 4
+    assert abs(abs(tilt.mean()) - 45) < 0.5
+    assert abs(height) < 0.1 * 0.005
 
 
 def test_neutral_square_stays_where_it_is(tmp_path):
@@ -88,7 +93,7 @@ def test_neutral_square_stays_where_it_is(tmp_path):
     free = bodies["time"] >= 0.0
     drift = np.hypot(bodies["x"][free] - 0.25, bodies["z"][free] - 0.25) / 0.005
     told(largest_drift_in_spacings=drift.max(), final_drift_in_spacings=drift[-1])
-    assert drift.max() < 0.5
+    assert drift.max() < 0.2
 
 
 def test_block_floats_at_its_draught(tmp_path):
@@ -97,7 +102,7 @@ def test_block_floats_at_its_draught(tmp_path):
     late = bodies["time"] > 1.5
     draught = 0.06 - (bodies["z"][late].mean() - 0.0195 / 2)  # the fill's level counts the displaced water
     told(draught_mm=draught * 1e3, exact_mm=16.932)
-    assert abs(draught - 0.016932) < 0.005 / 4
+    assert abs(draught - 0.016932) < 0.1 * 0.005
 
 
 def finished(case, folder, *changes):
