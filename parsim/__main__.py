@@ -176,17 +176,17 @@ def check(
     table: TableFile = None,
 ):
     """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
-    from parsim.commands.check import main as checked
+    from parsim.commands.check import check_cases
 
-    checked(path_of(case), changes, until, ranks, table)
+    check_cases(path_of(case), changes, until, ranks, table)
 
 
 @command
 def info(out: Folder):
     """Say what an output folder holds."""
-    from parsim.commands.info import main as told
+    from parsim.commands.info import tell
 
-    told(out)
+    tell(out)
 
 
 @command
@@ -195,17 +195,17 @@ def compare(
     second: Annotated[Path, typer.Argument(metavar="B", help="output folder")],
 ):
     """Compare two output folders bit by bit; exit code 3 when they differ."""
-    from parsim.output.compare import main as compared
+    from parsim.output.compare import compare_outputs
 
-    return compared(first, second)
+    return compare_outputs(first, second)
 
 
 @command
 def report(out: Folder):
     """Make tables, figures and a page from an output folder."""
-    from parsim.report import main as reported
+    from parsim.report import make_report
 
-    return reported(out)
+    return make_report(out)
 
 
 @command
@@ -214,17 +214,17 @@ def bench(
     with_model: Annotated[bool, typer.Option("--model", help="fit and print the cost model instead")] = False,
 ):
     """Measure what parsim does on this machine: speed, balance, memory, start-up. Takes some ten minutes."""
-    from parsim.bench import main as benched
+    from parsim.bench import bench_machine
 
-    return benched(as_json, with_model)
+    return bench_machine(as_json, with_model)
 
 
 @command
 def doctor():
     """Say whether this machine can run parsim: packages, MPI, threads, disk."""
-    from parsim.commands.doctor import main as examined
+    from parsim.commands.doctor import examine_machine
 
-    return examined()
+    return examine_machine()
 
 
 @command
@@ -252,7 +252,7 @@ def new(
     if listed:
         cases.show()
     else:
-        cases.main(name, example)
+        cases.new_case(name, example)
 
 
 def _version(asked: bool):

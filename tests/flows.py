@@ -65,11 +65,11 @@ def decaying(times, values, omega):
     return w, g
 
 
-def standing_wave(rows, amplitude, viscosity, across=None, periods=4.0, disorder=0.0):
+def standing_wave(rows, amplitude, viscosity, across=None, periods=4.0, disorder=0.0, **water):
     """Frequency over the exact one and decay over 2 nu k^2 (Lamb 1932, art. 348) of a standing wave.
 
     A basin 1 m long and 0.5 m deep; `rows` of particles over the depth; `amplitude` of the surface over the depth;
-    starts from a level surface.
+    starts from a level surface. `water`: keys of its table or of its scheme.
     """
     length, depth = 1.0, 0.5
     spacing = depth / rows
@@ -83,6 +83,7 @@ def standing_wave(rows, amplitude, viscosity, across=None, periods=4.0, disorder
             "y" if across else "",
             viscosity=viscosity,
             disorder=disorder,
+            **water,
         )
     )
     k = math.pi / length

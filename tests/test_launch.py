@@ -223,11 +223,11 @@ def test_one_failing_rank_ends_the_job(error, code, mpirun, program):
 
 
 def test_doctor_finds_this_machine_fit_and_says_what_is_wrong(monkeypatch, capsys):
-    assert doctor.main() == 0
+    assert doctor.examine_machine() == 0
     assert "can run here" in capsys.readouterr().out
     bad = doctor.Finding("MPI library", "none", "no [library]", "install it")
     monkeypatch.setattr(doctor, "CHECKS", (lambda: bad,))
-    assert doctor.main() == 1
+    assert doctor.examine_machine() == 1
     shown = capsys.readouterr().out
     assert "no [library]" in shown and "install it" in shown
 
@@ -236,5 +236,5 @@ def test_doctor_forgives_what_a_run_does_not_need(monkeypatch, capsys):
     monkeypatch.setattr(
         doctor, "CHECKS", (lambda: doctor.Finding("Pictures", "", "no OpenGL", "get it", needed=False),)
     )
-    assert doctor.main() == 0
+    assert doctor.examine_machine() == 0
     assert "no OpenGL" in capsys.readouterr().out

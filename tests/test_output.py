@@ -212,7 +212,7 @@ def test_equal_outputs_compare_equal_in_any_order_of_particles(pair, capsys):
     fields = {name: values[mixed] for name, values in fields.items()}
     frames.write_water(pair[1] / "frames/water_000001.vtkhdf", points[mixed], fields, 0.4, 100)
     (pair[1] / "series/timings.csv").write_text("# units: -\nstep\n1\n")
-    assert compare.main(*pair) == 0
+    assert compare.compare_outputs(*pair) == 0
     assert "equal bits: 4 frames, 6 series" in capsys.readouterr().out
 
 
@@ -221,7 +221,7 @@ def test_one_unit_in_the_last_place_is_found(pair, capsys):
         velocity = file["VTKHDF/PointData/velocity"]
         row = int(np.flatnonzero(file["VTKHDF/PointData/id"][:] == 321)[0])
         velocity[row, 0] = np.nextafter(velocity[row, 0], np.inf)
-    assert compare.main(*pair) == 3
+    assert compare.compare_outputs(*pair) == 3
     first = capsys.readouterr().out.splitlines()[0]
     assert "frames of water: velocity at step 100, id 321, component 0" in first and "(1 ulp)" in first
 
@@ -232,7 +232,7 @@ def test_a_changed_series_row_and_a_missing_frame_are_found(pair, capsys):
     lines[12] = lines[12].replace("B1", "B2")
     path.write_text("\n".join(lines) + "\n")
     frames.write_index(pair[1] / "water.vtkhdf.series", frames.read_index(pair[1] / "water.vtkhdf.series")[:1])
-    assert compare.main(*pair) == 3
+    assert compare.compare_outputs(*pair) == 3
     told = capsys.readouterr().out
     assert "series bodies: body at step 2" in told and "number of frames: 1 differ" in told
 
@@ -242,7 +242,7 @@ def test_a_lost_particle_is_found(pair, capsys):
     frames.write_water(
         pair[1] / "frames/water_000001.vtkhdf", points[1:], {name: v[1:] for name, v in fields.items()}, 0.4, 100
     )
-    assert compare.main(*pair) == 3
+    assert compare.compare_outputs(*pair) == 3
     told = capsys.readouterr().out
     assert "id 0: only in the first" in told and "velocity" not in told
 
@@ -261,4 +261,4 @@ def test_ulps_count_the_floats_between(a, b, distance):
 def test_comparing_nothing_is_refused(written, tmp_path):
     (tmp_path / "run.json").write_text("{}")
     with pytest.raises(InputError, match="nothing to compare"):
-        compare.main(tmp_path, written)
+        compare.compare_outputs(tmp_path, written)

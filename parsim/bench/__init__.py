@@ -7,7 +7,7 @@ from parsim.bench import model
 from parsim.bench.account import SUPPORTS, everything
 
 
-def main(as_json, with_model):
+def bench_machine(as_json, with_model):
     """Measure and print: the ratios first, or everything as JSON; with the cost model if wanted. Returns 0."""
 
     def tell(line):

@@ -12,7 +12,7 @@ def _check_ranks(case, ranks):
     check_ranks(case, ranks)
 
 
-def main(path, changes, until, ranks, table=None):
+def check_cases(path, changes, until, ranks, table=None):
     """Print what a case will cost on `ranks` ranks; with a `table` (CSV file) that of each row. Raises InputError."""
     if table:
         _every_row(path, changes, until, ranks, table)

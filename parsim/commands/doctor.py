@@ -176,7 +176,7 @@ def _disk():
 CHECKS = (_python, _mpi_library, _mpi_sum, _launched, _hdf5, _numba, _cache, _cores, _pictures, _disk)
 
 
-def main() -> int:
+def examine_machine() -> int:
     """Look, print the table, and return 0 when a run can work here, else 1."""
     table = Table("", "found", "wrong", "remedy", show_lines=True)
     bad = False

@@ -4,7 +4,7 @@ from parsim.output.lock import held
 from parsim.output.reader import open as open_run
 
 
-def main(out):
+def tell(out):
     """Print what the output folder `out` holds. Raises InputError when it is none."""
     found = open_run(out)
     told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}

@@ -7,7 +7,7 @@ from parsim.case import examples, file, model
 from parsim.errors import InputError, WriteError, suggestion
 
 
-def main(name, example=None):
+def new_case(name, example=None):
     """Write NAME.toml: the commented case, or the `example` with all its values in one file; never overwrites.
 
     Raises InputError for a name that is taken or an example that there is not, WriteError where it cannot be written.

@@ -177,7 +177,7 @@ def _compare_tables(ledger, name, a, b):
         ledger.arrays(where, column, *(table[column][: min(rows)] for table in (a, b)), step, item)
 
 
-def main(first, second) -> int:
+def compare_outputs(first, second) -> int:
     """Print the first difference and a summary by field. Returns 0 when the bits are equal, 3 when they differ.
 
     Raises InputError when a folder is no output or there is nothing in it to compare.

@@ -1,7 +1,7 @@
 """Tables, figures and pages made from an output folder; knows no solver."""
 
 
-def main(out) -> int:
+def make_report(out) -> int:
     """Write OUT/report/index.html, say where, and return 0. Raises InputError or WriteError."""
     from parsim.report.build import build
 
