@@ -16,6 +16,7 @@ from parsim import __version__
 from parsim.__main__ import main
 from parsim.case import estimate, examples
 from parsim.case.model import load
+from parsim.domain.comm import Comm
 from parsim.errors import InputError, WriteError
 from parsim.launch import mpirun as launch
 from parsim.run import warm
@@ -152,7 +153,7 @@ def test_estimate_counts_what_is_built(name):
     cost, bodies = estimate.estimate(case), from_case(case)
     assert cost.wall == len(Walls(case, 4))
     assert cost.body == len(BodySamples(case, bodies, 4, None))
-    assert cost.water == pytest.approx(len(water(case, bodies, WCMPS(case))), rel=0.03)
+    assert cost.water == pytest.approx(len(water(case, bodies, WCMPS(case), Comm())), rel=0.03)
 
 
 @pytest.mark.parametrize(

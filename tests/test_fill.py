@@ -7,6 +7,7 @@ from test_water import TANK, simulation
 
 from parsim.case.fill import profile_shares
 from parsim.case.model import Fill, parse
+from parsim.domain.comm import Comm
 from parsim.fluid.wcmps.scheme import WCMPS
 from parsim.geometry.rotation import matrices
 from parsim.particles.lattice import Lattice
@@ -180,10 +181,10 @@ def test_touching_fills_are_one_water_however_they_are_cut(seed):
     found = []
     for fills in ([{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 0.17]}], parts):
         case, free = (parse(TANK | {"bodies": bodies, "water": {"fill": fills}}) for bodies in ([body], []))
-        p = water(free, from_case(free), WCMPS(free))
+        p = water(free, from_case(free), WCMPS(free), Comm())
         order = np.lexsort((np.round(p.x, 9), np.round(p.z, 9)))
         found.append((case.bodies[0].position[2], p.x[order], p.z[order], p.n[order]))
-        immersed = water(case, from_case(case), WCMPS(case))
+        immersed = water(case, from_case(case), WCMPS(case), Comm())
         assert len(immersed) == pytest.approx(20 * 17 - 5.3 * 4.8, abs=0.6), "less what the body displaces"
     for one, many in zip(*found, strict=True):
         assert many == pytest.approx(one, rel=1e-12, abs=1e-12)
@@ -193,9 +194,11 @@ def test_touching_fills_are_one_water_however_they_are_cut(seed):
 def test_slabs_start_with_the_parts_of_one_disorder_and_flow():
     case = two_fills(disorder=0.3)
     s = simulation(case.model_dump(exclude_none=True))
-    whole = water(case, s.bodies, s.scheme)
+    whole = water(case, s.bodies, s.scheme, Comm())
     assert (whole.y == 0.5).all() and np.unique(whole.x).size > 100
-    parts = [water(case, s.bodies, s.scheme, lambda x, side=side: (x < 0.063) == side) for side in (True, False)]
+    parts = [
+        water(case, s.bodies, s.scheme, Comm(), lambda x, side=side: (x < 0.063) == side) for side in (True, False)
+    ]
     order = np.argsort(np.concatenate([part.id for part in parts]))
     for name in ("id", "x", "z", "u", "w", "n"):
         assert (np.concatenate([getattr(part, name) for part in parts])[order] == getattr(whole, name)).all()

@@ -212,8 +212,7 @@ def test_how_far_turned_boxes_are_away_against_a_plain_version():
 def test_every_body_within_reach_of_a_point_is_found(axes):
     rng = np.random.default_rng(6)
     points, place, reach = rng.uniform(-1.0, 1.0, (300, 3)), rng.uniform(-1.0, 1.0, (40, 3)), rng.uniform(0.1, 0.4, 40)
-    order = np.argsort(points[:, 0], kind="stable")
-    first, near = near_points(points, order, place, reach, np.isin(range(3), axes))
+    first, near = near_points(points, place, reach, np.isin(range(3), axes))
     apart = np.sqrt(((points[:, None] - place)[:, :, axes] ** 2).sum(2))
     for k in range(300):
         assert sorted(near[first[k] : first[k + 1]]) == list(np.flatnonzero(apart[k] < reach))
@@ -223,7 +222,7 @@ def test_every_body_within_reach_of_a_point_is_found(axes):
 def test_the_fill_leaves_out_the_volume_of_the_bodies_wherever_they_are(height):
     case = parse(POOL | {"bodies": [SQUARE | {"position": [0.2034, 0.5, height]}]})
     points = Lattice((0.0, 0.0, 0.0), (0.4, 1.0, 0.3), 0.01, (0, 2))
-    gone = points.points(taken_by_bodies([points], case, from_case(case)))
+    gone = points.points(taken_by_bodies([points], case, from_case(case), Comm()))
     assert len(gone) == pytest.approx(36, abs=1)
     assert np.abs(gone - [0.2034, 0.5, height]).max() < 0.04
 
@@ -232,7 +231,7 @@ def test_gaps_narrower_than_the_spacing_hold_no_water():
     blocks = [SQUARE | {"name": f"b{k}", "position": [x, 0.5, 0.15]} for k, x in enumerate((0.1, 0.164))]
     case = parse(POOL | {"bodies": blocks})
     s = simulation(POOL | {"bodies": blocks})
-    fluid = water(case, s.bodies, s.scheme)
+    fluid = water(case, s.bodies, s.scheme, Comm())
     assert not ((np.abs(fluid.x - 0.132) < 0.002) & (np.abs(fluid.z - 0.15) < 0.025)).any()
     expected = 40 * 30 - (2 * 36 + 0.4 * 6)
     assert len(fluid) == pytest.approx(expected, abs=1.5)
@@ -241,8 +240,10 @@ def test_gaps_narrower_than_the_spacing_hold_no_water():
 def test_slabs_start_with_the_parts_of_one_water():
     blocks = [SQUARE | {"name": f"b{k}", "position": [x, 0.5, 0.15]} for k, x in enumerate((0.1, 0.164))]
     s = simulation(POOL | {"bodies": blocks})
-    whole = water(s.case, s.bodies, s.scheme)
-    parts = [water(s.case, s.bodies, s.scheme, lambda x, side=side: (x < 0.113) == side) for side in (True, False)]
+    whole = water(s.case, s.bodies, s.scheme, Comm())
+    parts = [
+        water(s.case, s.bodies, s.scheme, Comm(), lambda x, side=side: (x < 0.113) == side) for side in (True, False)
+    ]
     for name in ("id", "x", "z", "n"):
         assert np.concatenate([getattr(part, name) for part in parts]).tolist() == getattr(whole, name).tolist()
 

@@ -31,9 +31,8 @@ class Beside:
         used = np.isin(range(3), case.axes)
         self._boxes = Boxes(bodies.position, matrices(bodies.quaternion).reshape(-1, 9), bodies.half, used)
         self._planes, self._spacing = _planes(case), case.spacing
-        order = np.argsort(points[:, 0], kind="stable")
         reach = bodies.radius + _MARGIN * case.spacing
-        self._first, self._near = near_points(points, order, bodies.position, reach, used)
+        self._first, self._near = near_points(points, bodies.position, reach, used)
 
     def look(self, points):
         """Distance to the nearest body (n,), m, inf where none is near, and whether a point is in a body or in a gap

@@ -37,10 +37,11 @@ def beside_bodies(points, case, bodies):
     return np.unique(np.concatenate(found))
 
 
-def taken_by_bodies(lattices, case, bodies):
+def taken_by_bodies(lattices, case, bodies, comm):
     """Numbers (n,) of the points that are not water, since bodies and the gaps beside them take them.
 
-    Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together.
+    Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together. Each
+    rank of `comm` measures its share of the points; all get the same.
     """
     number, place, spacing, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
     for points in lattices:
@@ -54,12 +55,13 @@ def taken_by_bodies(lattices, case, bodies):
         return number
     nearest, taken = Beside(place, case, bodies).look(place)
     near = np.flatnonzero(nearest < case.spacing)
-    share, beside = np.zeros(near.size), Beside(place[near], case, bodies)
+    mine = slice(near.size * comm.rank // comm.size, near.size * (comm.rank + 1) // comm.size)
+    count, beside = np.zeros(near.size, np.int64), Beside(place[near[mine]], case, bodies)
     fine = (np.arange(_FINE) + 0.5) / _FINE - 0.5
     steps = [fine if a in case.axes else np.zeros(1) for a in range(3)]
     for offset in np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3):
-        share += beside.look(place[near] + offset * spacing[near])[1]
-    share /= _FINE ** len(case.axes)
+        count[mine] += beside.look(place[near[mine]] + offset * spacing[near[mine]])[1]
+    share = comm.sum_integers(count) / _FINE ** len(case.axes)
     depth = np.where(taken, np.minimum(nearest, -1e-9 * case.spacing), nearest)[near] / case.spacing
     # water left under one flat face comes out of it by itself, at an edge or in a gap it is flung out: that goes first
     depth -= np.where(depth < 0.0, np.abs(share - 0.5 + depth), 0.0)
@@ -108,14 +110,14 @@ def columns(case):
     return np.concatenate([np.zeros(0), *x]), np.concatenate([np.zeros(0), *count])
 
 
-def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
-    """The water at the start, in pressure balance: the particles at `here`(x), bool.
+def water(case, bodies, scheme, comm, here=lambda x: np.ones(x.size, bool)):
+    """The water at the start, in pressure balance: the particles at `here`(x), bool; called on all ranks together.
 
     Ids count the points of all fills, so that they are the same for any slab. Velocities are those of the fills, but
     for water that settles first: see `flow`.
     """
     lattices = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
-    parts, number, taken = [], 0, taken_by_bodies(lattices, case, bodies)
+    parts, number, taken = [], 0, taken_by_bodies(lattices, case, bodies, comm)
     for fill, points in zip(case.water.fill, lattices, strict=True):
         x, y, z = points.rows
         open_water = here(x)
@@ -123,7 +125,10 @@ def water(case, bodies, scheme, here=lambda x: np.ones(x.size, bool)):
             open_water &= (x < case.gate.min_x) | (x > case.gate.max_x)
         mine = points.within(open_water, np.ones(y.size, bool), np.ones(z.size, bool))
         mine = mine[~np.isin(number + mine, taken)]
-        place = kept_out(points, mine, disordered(points, mine, number, case.water.disorder, case.axes), case, bodies)
+        place = points.points(mine)
+        if case.water.disorder:
+            moved = disordered(points, mine, number, case.water.disorder, case.axes)
+            place = kept_out(points, mine, moved, case, bodies)
         parts.append(_particles(case, scheme, fill, place, number + mine))
         number += points.size
     fluid = Particles.join(parts) if parts else Particles(0, case.water.scheme.fields)

@@ -34,7 +34,7 @@ class Simulation:
         self._damping = case.speed / case.depth if case.depth else 0.0
         if snapshot is None:
             self.domain.cut_evenly(*columns(case))
-            self._rebuild(water(case, self.bodies, self.scheme, self.domain.owns))
+            self._rebuild(water(case, self.bodies, self.scheme, comm, self.domain.owns))
             self._balance(True)
             self._rebuild(self.fluid)  # with cuts that know the walls and bodies too
             self.rebuilds, self._uneven = 0, [0.0, 1.0, 0]
