@@ -33,7 +33,7 @@ class Estimate:
 
 def estimate(case):
     """The cost of a case. Active are water, bodies, and walls and gate up to the highest level of the fill."""
-    layers = math.ceil(case.water.scheme.support)
+    layers = case.layers
     wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
     water, gate = round(_water(case)), _gate(case, layers)
     body = sum(_samples(case, body, layers) for body in case.bodies)
@@ -174,5 +174,5 @@ def _gate(case, layers):
 
 def _neighbours(case):
     """Mean length of a neighbour list inside the water."""
-    reach = case.water.scheme.support + case.run.skin
+    reach = case.reach / case.spacing
     return math.pi * reach**2 if case.dimensions == 2 else 4 / 3 * math.pi * reach**3

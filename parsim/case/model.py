@@ -215,6 +215,16 @@ class Case(Table):
         return self.water.scheme.sound * self.speed
 
     @property
+    def layers(self):
+        """Layers of boundary particles that fill the support."""
+        return math.ceil(self.water.scheme.support)
+
+    @property
+    def reach(self):
+        """Radius of the neighbour lists, m."""
+        return (self.water.scheme.support + self.run.skin) * self.spacing
+
+    @property
     def axes(self):
         """Indices of the axes along which things move: (0, 1, 2), in 2D (0, 2)."""
         return (0, 2) if self.dimensions == 2 else (0, 1, 2)

@@ -1,7 +1,5 @@
 """The grid of cells of a case, and how many ranks can share it."""
 
-import math
-
 from parsim.errors import InputError
 from parsim.geometry.faces import repeats
 from parsim.particles.cells import HALO, REACH, Grid
@@ -17,19 +15,9 @@ def check_ranks(case, ranks):
         )
 
 
-def layers_of(case):
-    """Layers of boundary particles that fill the support."""
-    return math.ceil(case.water.scheme.support)
-
-
-def reach_of(case):
-    """Radius of the neighbour lists, m."""
-    return (case.water.scheme.support + case.run.skin) * case.spacing
-
-
 def grid_of(case):
     """The global grid: the box, and beyond its walls and open sides the depth of the wall particles."""
-    beyond, reach = layers_of(case) * case.spacing, reach_of(case)
+    beyond, reach = case.layers * case.spacing, case.reach
     periodic = repeats(case)
     low = [c if p else c - beyond for c, p in zip(case.box.min, periodic, strict=True)]
     high = [c if p else c + beyond for c, p in zip(case.box.max, periodic, strict=True)]

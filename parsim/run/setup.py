@@ -2,7 +2,7 @@
 
 from parsim.coupling.solids import Solids
 from parsim.domain.domain import Domain
-from parsim.domain.grid import grid_of, layers_of, reach_of
+from parsim.domain.grid import grid_of
 from parsim.particles.neighbours import Neighbours
 
 _ROOM = 1.03  # length of the neighbour rows over that of the full lattice
@@ -12,9 +12,9 @@ class Models:
     """The models of one case, as attributes: scheme, solids, domain, near; reach, m, of the neighbour lists."""
 
     def __init__(self, case, comm, timers):
-        self.reach = reach_of(case)
+        self.reach = case.reach
         self.scheme = case.water.scheme.scheme(case, timers)
-        self.solids = Solids(case, layers_of(case), self.scheme.lattice, timers)
+        self.solids = Solids(case, case.layers, self.scheme.lattice, timers)
         self.domain = Domain(grid_of(case), comm, self.solids.sources, case.water.scheme.fields, timers)
-        share = (1.0 + case.run.skin / case.water.scheme.support) ** case.dimensions
+        share = (case.reach / self.scheme.lattice.radius) ** case.dimensions
         self.near = Neighbours(self.scheme.lattice.count * share * _ROOM)
