@@ -4,7 +4,7 @@ import pytest
 from example_cases import write
 
 from parsim.__main__ import main
-from parsim.case.table import row, rows
+from parsim.case.runs_table import row, rows
 from parsim.errors import InputError
 
 KEYS = "spacing,run.until,water.fill.0.max\n"

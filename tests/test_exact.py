@@ -9,15 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from parsim.case.scales import power_of_two
-from parsim.domain import exact
+from parsim.domain import exact_sums
 
 
 def total(values, index=None, rows=1, unit=1.0):
     limbs = np.zeros((rows, 1, 2), np.int64)
     values = np.asarray(values, float).reshape(-1, 1)
     units = np.full((rows, 1), unit)
-    good = exact.accumulate(values, np.zeros(len(values), np.int64) if index is None else index, units, limbs)
-    return exact.value(limbs, units)[:, 0], good
+    good = exact_sums.accumulate(values, np.zeros(len(values), np.int64) if index is None else index, units, limbs)
+    return exact_sums.value(limbs, units)[:, 0], good
 
 
 @settings(deadline=None)  # the first call compiles
@@ -42,8 +42,8 @@ def test_parts_add_up_like_the_whole():
     values, limbs = rng.normal(size=(999, 1)) * 1e6, np.zeros((3, 1, 2), np.int64)
     for part in range(3):
         chunk = values[part::3]
-        exact.accumulate(chunk, np.full(len(chunk), part), np.ones((3, 1)), limbs)
-    assert exact.value(limbs.sum(axis=0)[None], np.ones((1, 1)))[0, 0] == total(values)[0][0]
+        exact_sums.accumulate(chunk, np.full(len(chunk), part), np.ones((3, 1)), limbs)
+    assert exact_sums.value(limbs.sum(axis=0)[None], np.ones((1, 1)))[0, 0] == total(values)[0][0]
 
 
 def test_rows_are_kept_apart():

@@ -15,8 +15,8 @@ from parsim.observe.energy import energies
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import GATE_DOWN, GATE_UP
 from parsim.particles.tables import Kinematics, Vectors
-from parsim.run.beside import Boxes, away
 from parsim.run.fill import taken_by_bodies, water
+from parsim.run.near_bodies import Boxes, away
 from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
 

@@ -1,7 +1,7 @@
 """A case as a command line has it: a file, a row of a table, changes, another end."""
 
 from parsim.case import model
-from parsim.case import table as tables
+from parsim.case import runs_table as tables
 from parsim.errors import InputError
 
 

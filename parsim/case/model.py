@@ -29,8 +29,8 @@ from parsim.case.types import (
     Vector,
     Whole,
 )
+from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
-from parsim.fluid.schemes import DEFAULT, Scheme
 from parsim.solid.laws.settings import FoundationLaw, Law
 from parsim.solid.shapes import Shape
 

@@ -1,6 +1,6 @@
 """What the command `check` says of a case, or of all runs of a table."""
 
-from parsim.case import table as tables
+from parsim.case import runs_table as tables
 from parsim.case.estimate import brief, lines
 from parsim.case.load import load
 from parsim.errors import InputError

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from parsim.domain import exact
+from parsim.domain import exact_sums
 from parsim.domain.balance import accumulate, even_cuts, uneven
 from parsim.domain.slab import Slab
 from parsim.machine.jit import kernel
@@ -102,9 +102,9 @@ class Domain:
         rows = np.zeros(len(values), np.int64) if index is None else index
         limbs = np.zeros((count, values.shape[1], 2), np.int64)
         units = np.array(np.broadcast_to(units, limbs.shape[:2]), float, order="C")
-        good = exact.accumulate(values, rows, units, limbs)
+        good = exact_sums.accumulate(values, rows, units, limbs)
         *sums, bad = self.comm.sum_integers(np.append(limbs.ravel(), not good))
-        total = exact.value(np.reshape(sums, limbs.shape), units)
+        total = exact_sums.value(np.reshape(sums, limbs.shape), units)
         if bad:
             total[:] = np.nan
         return total[0] if index is None else total

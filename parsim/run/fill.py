@@ -10,7 +10,7 @@ import numpy as np
 from parsim.case.fill import level_over, profile_shares
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, Particles, make_id
-from parsim.run.beside import Beside
+from parsim.run.near_bodies import Beside
 
 _FINE = 4  # measuring points per spacing and axis
 

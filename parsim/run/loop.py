@@ -10,7 +10,7 @@ from parsim.launch import mpirun
 from parsim.launch.stop import STOPPED, Stop
 from parsim.launch.watch import Watch
 from parsim.output.folder import Folder
-from parsim.run.keeper import Keeper
+from parsim.run.checkpoints import Keeper
 from parsim.run.recorder import Recorder
 from parsim.run.simulation import Simulation
 
