@@ -5,11 +5,13 @@ import io
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import fake_run
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 import parsim
@@ -259,3 +261,14 @@ def test_words_are_escaped_and_empty_tables_left_out(run):
     assert table(("a",), []) == ""
     assert "&lt;script&gt;" in table(("a", "b"), [("<script>", 1.0)])
     assert speed.phases(run) is not None
+
+
+def test_a_body_that_has_left_is_not_named(run):
+    moment = scene.load(run, 0)
+    there, position = moment.body != 1, moment.position.copy()
+    position[1] = np.nan
+    left = replace(moment, quads=moment.quads[there], body=moment.body[there], position=position)
+    for view in scene.VIEWS.values():
+        axes = Figure().add_subplot()
+        pictures._names(axes, left, view)
+        assert len(axes.texts) == len(left.names) - 1

@@ -27,7 +27,7 @@ class Scales(NamedTuple):
 
 
 def scales(case):
-    """Those of a case: the longest edge of its box, the water that it holds, and the time that this takes along it."""
+    """Those of a case: the longest edge of its box, the water of a cube of that, the time that water takes along it."""
     longest = max(case.box.size[axis] for axis in case.axes)
     gravity = math.hypot(*case.gravity)
     speed = case.speed or math.sqrt(gravity * longest) or longest

@@ -1,4 +1,4 @@
-"""What the tables of a case file are made of. What may be chosen has its table in a file of its own, as its physics."""
+"""What the tables of a case file are made of. What may be chosen has its table beside its physics."""
 
 from typing import Annotated, Literal, Union, get_args
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall import Walls
-from parsim.case.scales import scales
+from parsim.case.scales import power_of_two, scales
 from parsim.coupling.films import Films
 from parsim.coupling.samples import BodySamples
 from parsim.solid.bodies import from_case
@@ -21,7 +21,7 @@ class Solids:
         self.timers, self._scales = timers, scales(case)
         self.bodies = from_case(case)
         self.contacts = Contacts(self.bodies, case)
-        self.samples = BodySamples(case, self.bodies, layers, _units(self._scales, case.dimensions))
+        self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
         self.films = Films(case, self.bodies, self.samples, lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
@@ -90,11 +90,11 @@ class Solids:
             self.samples.place(p, position, quaternion)
 
 
-def _units(scale, dimensions):
+def _units(case, scale, bodies):
     """Units (8, 6) of the sums in `BodySamples.loads`, by their rows for one body: see `Domain.sum`."""
-    units = np.ones((8, 6))
-    units[0] = scale.force * np.repeat([1.0, scale.length], 3)
-    units[3, 0] = scale.pressure(dimensions)
-    arms = np.repeat([1.0, scale.length], 3)
-    units[4:].flat[:21] = (scale.mass * arms[:, None] * arms)[np.triu_indices(6)]
+    units, radius = np.ones((8, 6)), float(bodies.radius.max(initial=case.spacing))
+    arms = np.repeat([1.0, power_of_two(radius)], 3)
+    mass = power_of_two(case.water.density * radius**case.dimensions)
+    units[0], units[3, 0] = scale.force * arms, scale.pressure(case.dimensions)
+    units[4:].flat[:21] = (mass * arms[:, None] * arms)[np.triu_indices(6)]
     return units

@@ -96,16 +96,16 @@ class Domain:
         """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,).
 
         `units`, one or as many as sums: powers of two, the same on all ranks. Nothing is lost down to 1e-18 of them;
-        terms up to 1e9 and sums up to 1e12 of them fit: beyond that, and where there is no number, all are nan.
+        terms up to 1e9 and sums up to 1e12 of them fit: a sum beyond is nan, with a term beyond or no number all are.
         """
         values = np.ascontiguousarray(values, float)
         rows = np.zeros(len(values), np.int64) if index is None else index
         limbs = np.zeros((count, values.shape[1], 2), np.int64)
         units = np.array(np.broadcast_to(units, limbs.shape[:2]), float, order="C")
         good = exact_sums.accumulate(values, rows, units, limbs)
-        *sums, bad = self.comm.sum_integers(np.append(limbs.ravel(), not good))
-        total = exact_sums.value(np.reshape(sums, limbs.shape), units)
-        if bad:
+        sums = self.comm.sum_integers(np.append(limbs.ravel(), not good))
+        total = exact_sums.value(sums[:-1].reshape(limbs.shape), units)
+        if sums[-1]:
             total[:] = np.nan
         return total[0] if index is None else total
 

@@ -117,11 +117,10 @@ def _edges(axes, corners, hidden):
 
 def _names(axes, scene, view):
     """Names of the bodies: on them from above, in a row over the water from the front."""
-    across, up, away = view.project(scene.position)
-    if view is not FRONT:
-        across, up, _ = view.project(_tops(scene))
+    there = np.unique(scene.body)  # what has left the box has no surface
+    across, up, _ = view.project(scene.position if view is FRONT else _tops(scene, there))
     stacked = []
-    for body in np.argsort(across, kind="stable"):
+    for body in there[np.argsort(across[there], kind="stable")]:
         place, level = up[body], 0
         if view is FRONT:
             reach = 0.04 * (scene.tank[1][0] - scene.tank[0][0])
@@ -142,11 +141,13 @@ def _names(axes, scene, view):
         )
 
 
-def _tops(scene):
-    """A point in the middle of the upper side (nb, 3) of each body."""
-    centres = scene.points[scene.quads].mean(1)
-    best = [np.flatnonzero(scene.body == i)[np.argmax(centres[scene.body == i, 2])] for i in range(len(scene.position))]
-    return centres[best].reshape(-1, 3)
+def _tops(scene, there):
+    """A point in the middle of the upper side (nb, 3) of each body that is `there`."""
+    centres, tops = scene.points[scene.quads].mean(1), scene.position.copy()
+    for body in there:
+        faces = centres[scene.body == body]
+        tops[body] = faces[np.argmax(faces[:, 2])]
+    return tops
 
 
 def _ruler(axes, scene, view):

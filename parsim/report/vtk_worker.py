@@ -67,6 +67,8 @@ def furnish(plotter, scene):
     """Put everything of one moment in the place of what was there."""
     plotter.clear_actors()
     for body, colour in enumerate(scene.colours):
+        if not (scene.body == body).any():  # it has left the box
+            continue
         block = _quads(scene.points, scene.quads[scene.body == body])
         plotter.add_mesh(block, color=colour, ambient=0.35, diffuse=0.75)
         plotter.add_mesh(block.extract_all_edges(), color="#3a1d10", line_width=3, lighting=False)

@@ -2,7 +2,7 @@
 
 Gaps narrower than the spacing hold no particle, and a body's underside need not lie on a lattice plane. Hence the
 space that bodies take is measured finely, and as many lattice points are left out as fill it, those deepest inside
-the bodies first, whole rows thinned evenly. Only what lies beside bodies is looked at, the same on every rank.
+the bodies first, whole rows thinned evenly. Only what lies beside bodies is looked at.
 """
 
 import numpy as np

@@ -41,9 +41,9 @@ def compared_until(run):
     return alike if series is None else min(alike, float(series["time"][-1]))
 
 
-def largest_x(run, track):
-    """The largest x (m) of a body's centre while experiments repeat, and when (s); None before t = 0."""
-    some = np.flatnonzero((track["time"] >= 0) & (track["time"] <= compared_until(run)))
+def largest_x(track, end):
+    """The largest x (m) of a body's centre from t = 0 to `end`, s, and when (s), or None."""
+    some = np.flatnonzero((track["time"] >= 0) & (track["time"] <= end) & np.isfinite(track["x"]))
     if not len(some):
         return None
     best = some[np.argmax(track["x"][some])]
@@ -91,7 +91,7 @@ def told(run):
     rows, times, end = [], asked(run, "places", ()), compared_until(run)
     for name, track in body_tracks(run).items():
         places = [at_time(track, "x", time) for time in times]
-        best = largest_x(run, track) or (None, None)
+        best = largest_x(track, end) or (None, None)
         rows.append((name, draught(run, name, track), archimedes_draught(run, name), *places, *best))
     titles = (
         "body",
@@ -153,7 +153,7 @@ def _published_x(axes, run, colours):
 
 def _largest(run, number):
     track = body_tracks(run).get(number.block)
-    best = None if track is None else largest_x(run, track)
+    best = None if track is None else largest_x(track, compared_until(run))
     return best and best[0]
 
 

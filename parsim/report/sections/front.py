@@ -47,7 +47,7 @@ def front(run):
     if arrival is not None:
         axes.axvline(arrival, color=WATER, linestyle="--", label=f"arrives at {arrival:.3f} s")
     for number in published(run):
-        if number.quantity.startswith("front") and number.low is not None:
+        if number.quantity in QUANTITIES and number.low is not None:
             axes.axvspan(
                 number.low - 0.003,
                 number.high + 0.003,

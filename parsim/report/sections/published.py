@@ -2,9 +2,7 @@
 
 from parsim.report import measures
 from parsim.report.page import section, table
-from parsim.report.sections import bodies, front
-
-QUANTITIES = front.QUANTITIES | bodies.QUANTITIES  # by their name in reference.csv
+from parsim.report.sections import bodies
 
 
 def parts(page):
@@ -14,7 +12,12 @@ def parts(page):
 
 def measured(run, number):
     """What this run has for a published number, None when it has nothing comparable."""
-    return QUANTITIES[number.quantity](run, number) if number.quantity in QUANTITIES else None
+    from parsim.report.sections import SECTIONS  # which has this one among its own
+
+    for each in SECTIONS:
+        if number.quantity in getattr(each, "QUANTITIES", {}):
+            return each.QUANTITIES[number.quantity](run, number)
+    return None
 
 
 def compared(run):
