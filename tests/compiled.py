@@ -10,7 +10,7 @@ import sys
 from parsim.case import model as cases
 from parsim.case.load import load
 from parsim.domain.comm import Comm
-from parsim.observe import rows_now
+from parsim.observe.observers import rows_now
 from parsim.run import warm
 from parsim.run.simulation import Simulation
 

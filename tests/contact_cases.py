@@ -5,9 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from parsim.case.model import Faces
 from parsim.geometry.rotation import from_angles, matrices, turn_of
 from parsim.solid.bodies import Bodies
 from parsim.solid.laws.settings import FoundationLaw
+from parsim.solid.shapes import BoxShape
 
 HALF, MASS, MU = (0.03625, 0.03625, 0.00975), 0.089, 0.412
 GRAVITY = (0.0, 0.0, -9.81)
@@ -17,13 +19,21 @@ CORNER = np.array(turn_of(*(_ACROSS * math.acos(HALF[2] / math.hypot(*HALF))))) 
 FLAT = (1.0, 0.0, 0.0, 0.0)
 
 
+def boxes(*half):
+    """Shapes of boxes of these half edges (3,), m."""
+    return [BoxShape(size=tuple(2.0 * float(h) for h in each)) for each in half]
+
+
 class Plate:
     """A gate that has always been rising."""
 
-    min_x, max_x = 0.5, 0.505
+    half = np.array([0.0025, 1e3, 1e3])
 
     def bottom(self, time):
         return 0.4 * time
+
+    def centre(self, time):
+        return np.array([0.5025, 0.0, self.bottom(time) + self.half[2]])
 
     def velocity(self, time):
         return 0.4
@@ -34,7 +44,7 @@ def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), you
     faces = dict.fromkeys([f"{a}_{s}" for a in "xyz" for s in ("min", "max")], "open") | dict.fromkeys(walls, "wall")
     material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution)
     numbers = SimpleNamespace(steps_per_contact=steps, law=FoundationLaw())
-    box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=SimpleNamespace(**faces | other))
+    box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=Faces(**faces | other))
     return SimpleNamespace(
         dimensions=3,
         axes=(0, 1, 2),
@@ -48,7 +58,7 @@ def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), you
 
 
 def blocks(positions, **other):
-    return Bodies([HALF] * len(positions), [MASS] * len(positions), positions, **other)
+    return Bodies(boxes(*[HALF] * len(positions)), [MASS] * len(positions), positions, **other)
 
 
 def go(bodies, contacts, dt, steps, time=0.0, load=None):

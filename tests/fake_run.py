@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from parsim.observe import TABLES
+from parsim.observe.observers import TABLES
 from parsim.output import frames
 from parsim.output.series import Table
 

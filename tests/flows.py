@@ -25,7 +25,7 @@ def merged(data, changes):
 def simulation(data, **changes):
     """A case as a nested dict, with `changes` merged in, after its settling, on one rank."""
     case = parse(merged(data, changes))
-    s = Simulation(case, Comm(case.box.faces.x_min == "periodic"))
+    s = Simulation(case, Comm(case.box.faces.x_min.repeats))
     while s.time < 0.0:
         s.step()
     return s

@@ -5,17 +5,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from contact_cases import boxes
 
-from parsim.geometry.boxes import rotation
+from parsim.case.places import rotation
 from parsim.geometry.rotation import from_angles, matrices
 from parsim.solid.bodies import Bodies, from_case
+from parsim.solid.shapes import BoxShape
 
 INERTIA = (1.0, 2.0, 3.0)
 
 
 def rotor(spin=(0.01, 1.0, 0.01)):
     """A body of principal moments 1, 2, 3 kg m2."""
-    bodies = Bodies([(1.0, 1.0, 1.0)], [1.0], [(0.0, 0.0, 0.0)], spin=[spin])
+    bodies = Bodies(boxes((1.0, 1.0, 1.0)), [1.0], [(0.0, 0.0, 0.0)], spin=[spin])
     bodies.inertia[:] = INERTIA
     return bodies
 
@@ -54,7 +56,7 @@ def euler_reference(spin, time, steps):
 
 
 def test_mass_properties_of_a_box():
-    bodies = Bodies([(0.5, 1.0, 1.5)], [6.0], [(1.0, 2.0, 3.0)])
+    bodies = Bodies(boxes((0.5, 1.0, 1.5)), [6.0], [(1.0, 2.0, 3.0)])
     assert bodies.volume[0] == 6.0
     assert bodies.inertia[0] == pytest.approx([6 * (4 + 9) / 12, 6 * (1 + 9) / 12, 6 * (1 + 4) / 12], rel=1e-15)
     assert bodies.potential_energy((0.0, 0.0, -9.81)) == pytest.approx(6 * 9.81 * 3, rel=1e-15)
@@ -62,7 +64,7 @@ def test_mass_properties_of_a_box():
 
 def test_kinetic_energy_is_the_sum_over_points():
     bodies = Bodies(
-        [(0.1, 0.2, 0.3)],
+        boxes((0.1, 0.2, 0.3)),
         [2.0],
         [(0.0, 0.0, 0.0)],
         quaternion=[from_angles((10, 20, 30))],
@@ -78,7 +80,7 @@ def test_kinetic_energy_is_the_sum_over_points():
 
 def test_surface_is_closed_and_looks_outward():
     bodies = Bodies(
-        [(0.1, 0.2, 0.3), (1.0, 1.0, 1.0)],
+        boxes((0.1, 0.2, 0.3), (1.0, 1.0, 1.0)),
         [1.0, 2.0],
         [(1.0, 2.0, 3.0), (-5.0, 0.0, 0.0)],
         quaternion=[from_angles((10, 20, 30)), (1.0, 0.0, 0.0, 0.0)],
@@ -100,7 +102,9 @@ def test_angles_turn_about_fixed_axes_in_order():
 
 
 def test_drift_about_a_principal_axis_is_exact():
-    bodies = Bodies([(0.1, 0.2, 0.3)], [1.0], [(0.0, 0.0, 0.0)], velocity=[(1.0, 2.0, 3.0)], spin=[(0.0, 0.7, 0.0)])
+    bodies = Bodies(
+        boxes((0.1, 0.2, 0.3)), [1.0], [(0.0, 0.0, 0.0)], velocity=[(1.0, 2.0, 3.0)], spin=[(0.0, 0.7, 0.0)]
+    )
     position, quaternion = bodies.drifted(2.0)
     assert position[0] == pytest.approx((2.0, 4.0, 6.0))
     assert quaternion[0] == pytest.approx((math.cos(0.7), 0.0, math.sin(0.7), 0.0), abs=1e-15)
@@ -128,7 +132,7 @@ def test_free_rotor_converges_to_euler():
 
 
 def test_from_case():
-    shape = SimpleNamespace(size=(0.2, 0.4, 0.6))
+    shape = BoxShape(size=(0.2, 0.4, 0.6))
     body = {
         "shape": shape,
         "position": (1.0, 2.0, 3.0),
@@ -159,8 +163,8 @@ def test_no_bodies():
 
 def test_the_metre_across_a_plane_does_not_count_as_a_radius():
     """Else a small box that spins in 2D is told to be as fast as sound, and makes the step small."""
-    boxes = [Bodies([[0.01, 0.5, 0.02]], 1.0, [[0.0, 0.5, 0.0]], spin=[[0.0, 30.0, 0.0]], planar=flat)
+    made = [Bodies(boxes((0.01, 0.5, 0.02)), 1.0, [[0.0, 0.5, 0.0]], spin=[[0.0, 30.0, 0.0]], planar=flat)
              for flat in (True, False)]  # fmt: skip
     reach = [np.hypot(0.01, 0.02), np.sqrt(0.01**2 + 0.5**2 + 0.02**2)]
-    assert [box.surface_speed() for box in boxes] == pytest.approx(30.0 * np.array(reach))
-    assert [box.surface_acceleration() for box in boxes] == pytest.approx(900.0 * np.array(reach))
+    assert [box.surface_speed() for box in made] == pytest.approx(30.0 * np.array(reach))
+    assert [box.surface_acceleration() for box in made] == pytest.approx(900.0 * np.array(reach))

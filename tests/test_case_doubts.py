@@ -29,7 +29,7 @@ def floes(gap, x=0.2, level=0.3):
     body = {"shape": {"size": [0.1, 1.0, 0.06]}, "density": 600.0, "material": "wood"}
     places = (0.15 - gap / 2, 0.25 + gap / 2)
     bodies = [body | {"name": f"b{i}", "position": [place, 0.5, "float"]} for i, place in enumerate(places)]
-    return fills((0.0, 0.4, 0.0, level)) | {"bodies": bodies, "output": {"gauges": [{"name": "here", "x": x}]}}
+    return fills((0.0, 0.4, 0.0, level)) | {"bodies": bodies, "output": {"sensors": [{"name": "here", "x": x}]}}
 
 
 @pytest.mark.parametrize(("gap", "x", "blocked"), [
@@ -37,7 +37,7 @@ def floes(gap, x=0.2, level=0.3):
     (0.0016, 0.15, True), (0.0016, 0.09, False), (0.0016, 0.11, True), (0.0016, 0.005, False),
 ])  # fmt: skip
 def test_a_gauge_needs_a_gap_of_a_spacing_within_its_reach(gap, x, blocked):
-    assert ("output.gauges.here: " in told(floes(gap, x))) is blocked
+    assert ("output.sensors.here: " in told(floes(gap, x))) is blocked
 
 
 def test_a_gauge_between_a_body_and_a_wall_or_on_dry_ground():
@@ -48,27 +48,27 @@ def test_a_gauge_between_a_body_and_a_wall_or_on_dry_ground():
         "material": "wood",
         "position": [0.1955, 0.5, "float"],
     }
-    case = fills((0.0, 0.4, 0.0, 0.3)) | {"output": {"gauges": [{"name": "here", "x": 0.396}]}}
-    assert "gauges.here: stands at or between" in told(case | {"bodies": [body]})
-    assert "gauges" not in told(case | {"bodies": [body | {"position": [0.1955, 0.5, 0.2]}]}), "under water"
+    case = fills((0.0, 0.4, 0.0, 0.3)) | {"output": {"sensors": [{"name": "here", "x": 0.396}]}}
+    assert "sensors.here: stands at or between" in told(case | {"bodies": [body]})
+    assert "sensors" not in told(case | {"bodies": [body | {"position": [0.1955, 0.5, 0.2]}]}), "under water"
     dry = floes(0.0) | {"water": {"fill": fills((0.0, 0.1, 0.0, 0.3))["water"]["fill"]}}
     dry["bodies"] = [b | {"position": [*b["position"][:2], 0.35]} for b in dry["bodies"]]
-    assert "gauges" not in told(dry), "no water there"
+    assert "sensors" not in told(dry), "no water there"
 
 
 @pytest.mark.parametrize("name", ["4_blocks_dry", "9_blocks_50mm"])
 def test_blocks_on_a_reservoir_leave_a_gauge_no_room(name):
     path = ROOT / "cases" / "ice_release" / f"{name}.toml"
     for x in (0.075, 0.005, 0.145):
-        change = f'output.gauges=[{{name="reservoir", x={x}}}]'
-        assert "output.gauges.reservoir: " in "".join(load(path, [change]).warnings())
+        change = f'output.sensors=[{{name="reservoir", x={x}}}]'
+        assert "output.sensors.reservoir: " in "".join(load(path, [change]).warnings())
 
 
 def test_a_gauge_reads_a_narrow_gap_at_a_fine_spacing():
     path = ROOT / "cases" / "ice_release" / "4_blocks_dry.toml"
-    change = 'output.gauges=[{name="reservoir", x=0.075}]'  # gaps of 5/3 mm cross there
+    change = 'output.sensors=[{name="reservoir", x=0.075}]'  # gaps of 5/3 mm cross there
     said = {spacing: load(path, [change, f"spacing={spacing}"]).warnings() for spacing in (0.0025, 0.001)}
-    assert "gauges" in "".join(said[0.0025]) and said[0.001] == []
+    assert "sensors" in "".join(said[0.0025]) and said[0.001] == []
 
 
 def test_touching_fills_are_one_water():

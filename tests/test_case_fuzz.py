@@ -189,7 +189,7 @@ def overridden(seed):
         "box",
         "gate",
         "a" * 3000,
-        "output.gauges.0.name",
+        "output.sensors.0.name",
         "=",
         "",
         ".",
@@ -234,7 +234,7 @@ def take_steps(case):
 
     with contextlib.suppress(InputError, RunError):
         check_ranks(case, 1)
-        simulation = Simulation(case, Comm(case.box.faces.x_min == "periodic"))
+        simulation = Simulation(case, Comm(case.box.faces.x_min.repeats))
         for _ in range(2):
             simulation.step()
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from example_cases import bodies, write
 
+from parsim.case import places
 from parsim.case.model import load
 from parsim.errors import InputError
-from parsim.geometry import boxes as geometry
 
 
 @pytest.fixture
@@ -39,13 +39,13 @@ def test_overlap_agrees_with_points_inside_both():
     seen = set()
     for _ in range(200):
         first, second = (
-            geometry.TurnedBox(centre, half, geometry.rotation(angles))
+            places.TurnedBox(centre, half, places.rotation(angles))
             for centre, half, angles in random.uniform([[-1], [0.2], [-180]], [[1], [1], [180]], (2, 3, 3))
         )
         points = (grid * first.half) @ first.axes.T + first.centre
         common = bool(np.any(np.all(np.abs((points - second.centre) @ second.axes) <= second.half, axis=1)))
-        depth = geometry.overlap(first, second)
-        assert depth == pytest.approx(geometry.overlap(second, first))
+        depth = places.overlap(first, second)
+        assert depth == pytest.approx(places.overlap(second, first))
         # the grid misses overlaps thinner than its own step
         assert common == (depth > 0) or (not common and depth < 0.1)
         seen.add(common)
@@ -53,6 +53,6 @@ def test_overlap_agrees_with_points_inside_both():
 
 
 def test_rotation_is_about_x_then_y_then_z():
-    assert geometry.rotation((90, 0, 90)) @ [0, 1, 0] == pytest.approx([0, 0, 1])
-    assert geometry.rotation((0, 90, 90)) @ [0, 0, 1] == pytest.approx([0, 1, 0])
-    assert geometry.rotation((0, 30, 0)) @ [1, 0, 0] == pytest.approx([math.sqrt(3) / 2, 0, -0.5])
+    assert places.rotation((90, 0, 90)) @ [0, 1, 0] == pytest.approx([0, 0, 1])
+    assert places.rotation((0, 90, 90)) @ [0, 0, 1] == pytest.approx([0, 1, 0])
+    assert places.rotation((0, 30, 0)) @ [1, 0, 0] == pytest.approx([math.sqrt(3) / 2, 0, -0.5])

@@ -124,7 +124,7 @@ BROKEN = {
     "wrong word for a height": ("3d", ["bodies.A1.position=[0.05,0.05,'flot']"],
                                 ["bodies.A1.position.2 = 'flot': must be a number or 'float'"]),
     "fixed but moving": ("3d", ["bodies.A1.fixed=true", "bodies.A1.spin=[0,0,1]"], ["bodies.A1.fixed = true", "zero"]),
-    "gauge outside": ("3d", ["output.gauges.middle.x=0.5"], ["output.gauges.middle.x = 0.5: outside the box"]),
+    "gauge outside": ("3d", ["output.sensors.middle.x=0.5"], ["output.sensors.middle.x = 0.5: outside the box"]),
     "no such body": ("3d", ["bodies.A2.density=900"], ["--set bodies.A2.density=900: bodies has no entry A2", "A1"]),
     "no such place": ("3d", ["water.fill.7.max=[1,1,1]"], ["water.fill has no entry 7; allowed: 0, 1"]),
     "set without a value": ("3d", ["spacing"], ["--set spacing: must be key.path=value"]),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from contact_cases import FLAT, GRAVITY, Plate, blocks, budget, case, go
+from contact_cases import FLAT, GRAVITY, Plate, blocks, boxes, budget, case, go
 
 from parsim.geometry.rotation import from_angles, turn_of, turned
 from parsim.solid.bodies import Bodies
@@ -39,7 +39,7 @@ def heap(random):
         for _ in range(count)
     ]
     bodies = Bodies(
-        half,
+        boxes(*half),
         900.0 * 8.0 * half.prod(axis=1),
         (0.5, 0.5, 0.1) + away,
         quaternion=turn,
@@ -55,10 +55,10 @@ def heap(random):
         steps=random.choice([5, 20]),
     )
     given.dimensions = 2 if planar else 3
-    gate = Moving(random.uniform(0.05, 0.15), random.normal(0.0, 0.5)) if random.random() < 0.7 else None
+    gate = [Moving(random.uniform(0.05, 0.15), random.normal(0.0, 0.5))] if random.random() < 0.7 else []
     loads = np.zeros((count, 6))
     loads[~bodies.fixed, :3] = random.normal(0.0, 0.5, (np.count_nonzero(~bodies.fixed), 3))
-    contacts = Contacts(bodies, given, gate=gate)
+    contacts = Contacts(bodies, given, gate)
     return bodies, contacts, loads, min(contacts.limit(), 1e-2) * random.uniform(0.3, 1.0)
 
 
@@ -119,7 +119,7 @@ def test_an_elastic_block_leaves_the_edge_of_a_gate_no_faster_than_it_came(yaw):
     bodies = blocks([(0.5, 0.5, 0.4)], quaternion=[from_angles((0.0, 60.0, yaw))], velocity=[(0.0, 0.0, 0.5)])
     top = bodies.surface()[0][np.argmax(bodies.surface()[0][:, 2])]
     bodies.position[0] += 0.5025 - top[0], 0.0, 0.5 - 1e-4 - top[2]
-    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), friction=0.0, restitution=1.0), gate=Moving(0.5, 0.0))
+    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), friction=0.0, restitution=1.0), [Moving(0.5, 0.0)])
     came = bodies.kinetic_energy()
     go(bodies, contacts, 1e-4, 150)
     assert contacts.count == 0 and abs(bodies.spin[0, 1]) > 1.0, "it has been hit"

@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
-from contact_cases import HALF, blocks, case
+from contact_cases import HALF, blocks, boxes, case
 
-from parsim.geometry.boxes import TurnedBox, overlap
+from parsim.case.places import TurnedBox, overlap
 from parsim.geometry.rotation import matrices
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.search import AREA, DEPTH, INDEX, MIDDLE, POINT
 from parsim.solid.separation import best_feature, depth_in_box
-from parsim.solid.shapes.box import elements_of
+from parsim.solid.shapes import elements_of
 from parsim.solid.touch import measure, normal_of
 
 
@@ -21,7 +21,7 @@ def random_pair(seed):
     half = random.uniform(0.02, 0.06, (2, 3))
     between = random.normal(size=3)
     places = np.array([(0.0, 0.0, 0.0), between / np.linalg.norm(between) * random.uniform(0.03, 0.1)])
-    return Bodies(half, [1.0, 1.0], places, quaternion=turns / np.linalg.norm(turns, axis=1)[:, None])
+    return Bodies(boxes(*half), [1.0, 1.0], places, quaternion=turns / np.linalg.norm(turns, axis=1)[:, None])
 
 
 def test_separating_axes_agree_with_the_exact_overlap():
@@ -29,8 +29,8 @@ def test_separating_axes_agree_with_the_exact_overlap():
     for seed in range(200):
         bodies = random_pair(seed)
         turn = matrices(bodies.quaternion)
-        boxes = [TurnedBox(p, h, t) for p, h, t in zip(bodies.position, bodies.half, turn, strict=True)]
-        exact = overlap(*boxes)
+        pair = [TurnedBox(p, h, t) for p, h, t in zip(bodies.position, bodies.half, turn, strict=True)]
+        exact = overlap(*pair)
         contacts = Contacts(bodies, case(walls=()))
         contacts._prepare(bodies, bodies.fixed, 0.0, 0.0)
         feature, apart = best_feature(contacts._table, 0, 1, (0.0, 0.0, 0.0), False)

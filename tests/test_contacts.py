@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from contact_cases import CORNER, EDGE, FLAT, HALF, MASS, MU, Plate, blocks, budget, case, go, momenta
+from contact_cases import CORNER, EDGE, FLAT, HALF, MASS, MU, Plate, blocks, boxes, budget, case, go, momenta
 
 from parsim.geometry.rotation import from_angles
 from parsim.solid import contacts as contacts_module
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.laws.foundation import damping_of
-from parsim.solid.shapes.box import elements_of
+from parsim.solid.shapes import elements_of
 
 
 def drop(quaternion, **options):
@@ -162,7 +162,7 @@ def test_blocks_collide_head_on():
 )
 def test_action_is_reaction(poses):
     bodies = Bodies(
-        [(0.03, 0.03, 0.03)] * 2,
+        boxes(*[(0.03, 0.03, 0.03)] * 2),
         [MASS, 2 * MASS],
         [(0.5, 0.5, 0.6), (0.503, 0.501, 0.5)],
         quaternion=poses,
@@ -183,7 +183,7 @@ def test_crossing_edges_bounce():
     """Two bars whose edges cross midway between elements."""
     up, down = from_angles((45.0, 0.0, 0.0)), from_angles((0.0, 45.0, 0.0))
     bodies = Bodies(
-        [(0.03, 0.01, 0.01), (0.01, 0.03, 0.01)],
+        boxes((0.03, 0.01, 0.01), (0.01, 0.03, 0.01)),
         [MASS] * 2,
         [(0.507, 0.5, 0.55), (0.5, 0.507, 0.5)],
         quaternion=[up, down],
@@ -237,13 +237,13 @@ def test_aligned_corners_hardly_feel_each_other():
 def test_a_rising_gate_drags_a_block_by_friction():
     """Pressed against the plate with 5 N, a block of 0.089 kg is lifted by up to 2.06 N: it rises with the plate."""
     bodies = blocks([(0.5 - HALF[2], 0.5, 0.5)], quaternion=[from_angles((0.0, 90.0, 0.0))])
-    contacts = Contacts(bodies, case(), gate=Plate())
+    contacts = Contacts(bodies, case(), [Plate()])
     load = np.array([[2.0, 0.0, 0.0, 0.0, 0.0, 0.0]])  # 0.824 N of friction against 0.873 N of weight: it slides down
     go(bodies, contacts, 2e-4, 250, load=load)
     assert bodies.velocity[0, 2] == pytest.approx((MU * 2.0 / MASS - 9.81) * 0.05, rel=0.02)
     assert contacts.gate_work == pytest.approx(MU * 2.0 * 0.4 * 0.05, rel=0.02)
     bodies = blocks([(0.5 - HALF[2], 0.5, 0.5)], quaternion=[from_angles((0.0, 90.0, 0.0))])
-    contacts, load = Contacts(bodies, case(), gate=Plate()), np.array([[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    contacts, load = Contacts(bodies, case(), [Plate()]), np.array([[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
     start, pushed = budget(bodies, contacts), bodies.position[0, 0]
     go(bodies, contacts, 2e-4, 1000, load=load)
     assert bodies.velocity[0, 2] == pytest.approx(0.4, abs=0.01)
@@ -286,7 +286,7 @@ def test_held_bodies_wait_and_fixed_ones_stay():
 
 def test_planar_bodies_stay_in_the_plane():
     bodies = Bodies(
-        [(0.05, 0.5, 0.02)] * 2,
+        boxes(*[(0.05, 0.5, 0.02)] * 2),
         [5.0] * 2,
         [(0.5, 0.5, 0.1), (0.53, 0.5, 0.16)],
         planar=True,

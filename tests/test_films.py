@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from test_water import POOL, SQUARE, TANK, simulation
 
-from parsim.coupling.films import gap_to_box, gap_to_plane
+from parsim.coupling.films import gap_to_plane
 from parsim.errors import InputError
 from parsim.geometry.nearby import near_bodies
+from parsim.solid.shapes import BoxShape
+from parsim.solid.shapes.kernels import ahead
 
 WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
 SPREAD = 0.1  # of the lift of a fixed body six particles thick, also in the open; without films it is -4 on the bed
@@ -96,11 +98,11 @@ def test_gaps_are_measured_along_the_normal():
     assert gap_to_plane((0.2, 0.0, 0.04), slanted, floor) == pytest.approx(0.05)
     assert gap_to_plane((0.2, 0.0, 0.03), down, side) == np.inf
     assert gap_to_plane((0.31, 0.0, 0.03), down, floor) == np.inf, "beyond the open side"
-    half = np.array([0.1, 0.2, 0.3])
-    assert gap_to_box((0.0, 0.0, 0.35), down, half, 0.01) == pytest.approx(0.05)
-    assert gap_to_box((0.0, 0.0, 0.295), down, half, 0.01) == pytest.approx(-0.005), "an overlap closes the gap"
-    assert gap_to_box((0.11, 0.0, 0.35), down, half, 0.01) == np.inf, "beside it"
-    assert gap_to_box((0.0, 0.0, -0.4), down, half, 0.01) == np.inf, "behind"
+    half, box = (0.1, 0.2, 0.3), BoxShape.NUMBER
+    assert ahead(box, (0.0, 0.0, 0.35), down, half, 0.01) == pytest.approx(0.05)
+    assert ahead(box, (0.0, 0.0, 0.295), down, half, 0.01) == pytest.approx(-0.005), "an overlap closes the gap"
+    assert ahead(box, (0.11, 0.0, 0.35), down, half, 0.01) == np.inf, "beside it"
+    assert ahead(box, (0.0, 0.0, -0.4), down, half, 0.01) == np.inf, "behind"
 
 
 def test_water_inside_a_body_is_turned_out_through_the_nearest_face():

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from test_water import POOL, simulation
 
-from parsim.observe import rows_now
+from parsim.observe.observers import rows_now
 
 LONG, EVERY = 100_000, 500
 

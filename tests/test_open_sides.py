@@ -11,7 +11,7 @@ import parsim
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
 from parsim.errors import RunError
-from parsim.observe import rows_now
+from parsim.observe.observers import rows_now
 from parsim.run.loop import run
 from parsim.run.simulation import Simulation
 

@@ -8,7 +8,7 @@ import pytest
 from flows import simulation, tank
 from test_validate import told
 
-from parsim.geometry.boxes import TurnedBox, overlap, rotation
+from parsim.case.places import TurnedBox, overlap, rotation
 from parsim.geometry.rotation import matrices
 
 GRAVITY, SPACING, DENSITY = 9.81, 0.01, 1000.0
@@ -99,7 +99,7 @@ def heap(dice):
             ]
             body["angles"] = [0.0, dice.choice((0.0, dice.uniform(-45.0, 45.0))), 0.0]
             box = turned(body)
-            within = np.all(box.corners >= 0.0) and np.all(box.corners <= corner)
+            within = np.all(box.centre >= box.reach) and np.all(box.centre + box.reach <= corner)
             if within and all(overlap(box, turned(other)) < 0.0 for other in bodies):
                 break
         else:

@@ -7,7 +7,7 @@ import pytest
 
 import parsim
 from parsim.__main__ import main
-from parsim.observe import TABLES
+from parsim.observe.observers import TABLES
 
 # a gate, a body afloat, a gauge, and water that is thrown out over the top
 CASE = """
@@ -37,7 +37,7 @@ until = 0.05
 [output]
 frames = 0.02
 series = 0.005
-gauges = [{name = "middle", x = 0.03}]
+sensors = [{name = "middle", x = 0.03}]
 """
 
 

@@ -40,7 +40,7 @@ def test_a_first_run_gives_the_bits_of_a_second(one_rank, tmp_path, capsys, monk
     assert main(["compare", str(one_rank / "3d"), str(tmp_path / "first")]) == 0, capsys.readouterr().out
 
 
-@pytest.mark.parametrize("text", ["import parsim.machine.jit\n", "@implements(Gauss)\n"])
+@pytest.mark.parametrize("text", ["import parsim.machine.jit\n", "@implements(Gauss)\n", "@compiled\n"])
 @pytest.mark.parametrize("change", [
     lambda path: os.utime(path, (1, 1)), lambda path: path.write_text(path.read_text() + "#"),
 ])  # fmt: skip

@@ -8,7 +8,7 @@ import pytest
 from flows import course, simulation, tank
 from test_validate import told
 
-from parsim.observe import rows_now
+from parsim.observe.observers import rows_now
 
 GRAVITY = 9.81
 SOLID = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}

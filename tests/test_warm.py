@@ -62,7 +62,7 @@ def _drawn(dice):
     if dice.random() < 0.4:
         case["gate"] = {"min_x": 0.2, "max_x": 0.205, "opens": dice.choice((0.0, 0.5))}
     if dice.random() < 0.5:
-        case["output"] = {"gauges": [{"name": "one", "x": 0.05}]}
+        case["output"] = {"sensors": [{"name": "one", "x": 0.05}]}
     return case
 
 

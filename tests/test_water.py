@@ -45,7 +45,7 @@ PERIODIC = {
 def simulation(data):
     """A case as a nested dict, ready to step on one rank."""
     case = parse(data)
-    return Simulation(case, Comm(case.box.faces.x_min == "periodic"))
+    return Simulation(case, Comm(case.box.faces.x_min.repeats))
 
 
 def bottom(s):

@@ -11,13 +11,17 @@ import numpy as np
 from parsim.boundary.wall import lattice_axis, samples_of
 from parsim.particles.state import GATE_DOWN, GATE_UP, Particles
 
+_FAR = 1e3  # half edges of the plate over the size of the box: it has neither ends nor a top
+
 
 class Gate:
-    """Motion of the plate. Attributes: min_x, max_x, m, its faces."""
+    """Motion of the plate. Attributes: min_x, max_x, m, its faces; half (3,), m, half edges, of no end but below."""
 
     def __init__(self, case):
         gate = case.gate
         self.min_x, self.max_x = gate.min_x, gate.max_x
+        far = _FAR * max(high - low for low, high in zip(case.box.min, case.box.max, strict=True))
+        self.half = np.array([0.5 * (gate.max_x - gate.min_x), far, far])
         self._floor = case.box.min[2]
         self._lowest = gate.bottom
         self._speed, self._opens = gate.speed, gate.opens
@@ -25,6 +29,10 @@ class Gate:
     def bottom(self, time):
         """Height of the lower edge at `time`, m."""
         return self._lowest + self._speed * max(time - self._opens, 0.0)
+
+    def centre(self, time):
+        """Where its middle is at `time`, (3,), m."""
+        return np.array([0.5 * (self.max_x + self.min_x), 0.0, self.bottom(time) + self.half[2]])
 
     def velocity(self, time):
         """Upward speed at `time`, m/s."""

@@ -11,7 +11,7 @@ def lattice_axis(case, axis, layers):
     if case.dimensions == 2 and axis == 1:
         return np.array([0.5]), np.zeros(1, np.int64)
     count = round(case.box.size[axis] / case.spacing)
-    below, above = (layers if getattr(case.box.faces, side) == "wall" else 0 for side in SIDES[axis])
+    below, above = (layers if getattr(case.box.faces, side).holds_water else 0 for side in SIDES[axis])
     index = np.arange(-below, count + above)
     side = (index >= count).astype(np.int64) - (index < 0)
     return case.box.min[axis] + (index + 0.5) * case.spacing, side

@@ -1,15 +1,15 @@
-"""Checks of a case's bodies, materials, gate and gauges. Each takes a completed case and returns messages."""
+"""Checks of a case's bodies, materials, gate and sensors. Each takes a completed case and returns messages."""
 
 import math
 
 import numpy as np
 
+from parsim.case import places
 from parsim.case.fill import TOUCH, water_at
 from parsim.errors import nearest, suggestion
-from parsim.geometry import boxes as geometry
 from parsim.geometry.faces import period, repeats, walled_sides
+from parsim.observe.sensors import Gauge
 
-GAUGE_REACH = 1.5  # spacings: a gauge reads the highest water within this distance
 PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
 
 
@@ -31,7 +31,7 @@ def placed(case):
 def names(case):
     """Names are unique."""
     faults = []
-    for key, entries in (("bodies", case.bodies), ("output.gauges", case.output.gauges)):
+    for key, entries in (("bodies", case.bodies), ("output.sensors", case.output.sensors)):
         given = [entry.name for entry in entries]
         doubled = sorted({name for name in given if given.count(name) > 1}) if len(set(given)) < len(given) else []
         faults += [f'{key}: name = "{name}" is given more than once; names must differ' for name in doubled]
@@ -62,11 +62,12 @@ def _body(case, body):
         yield f"density, mass: exactly one must be given, {given}"
     if particles_across(case, body) < 2:
         yield (
-            f"shape.size = {list(body.shape.size)}: thinner than two particles at spacing = {case.spacing!r}; "
+            f"{body.shape.told()}: thinner than two particles at spacing = {case.spacing!r}; "
             f"its thinnest side {thinnest(case, body)!r} m must be at least 1.5 spacings"
         )
     if body.fixed and any((*body.velocity, *body.spin)):
         yield f"fixed = true: velocity = {list(body.velocity)} and spin = {list(body.spin)} must then be zero"
+    yield from body.shape.faults(case.dimensions == 2)
     if case.dimensions == 2:
         yield from _planar(body)
     if body.position[2] != "float":
@@ -74,8 +75,6 @@ def _body(case, body):
 
 
 def _planar(body):
-    if body.shape.size[1] != 1.0:
-        yield f"shape.size = {list(body.shape.size)}: y must be 1 in a 2D case"
     if body.position[1] != 0.5:
         yield f"position = {list(body.position)}: y must be 0.5 in a 2D case"
     if body.velocity[1]:
@@ -86,8 +85,8 @@ def _planar(body):
 
 
 def _outside(case, body):
-    corners = geometry.of_body(body).corners
-    low, high, around = corners.min(axis=0), corners.max(axis=0), repeats(case)
+    place = places.of_body(body)
+    low, high, around = place.centre - place.reach, place.centre + place.reach, repeats(case)
     for axis in case.axes:
         name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
         if around[axis]:
@@ -116,21 +115,21 @@ def speeds(case):
 
 def _fastest(case, body):
     """Bound of the speed of any point of a body at the start, m/s."""
-    radius = 0.5 * math.hypot(*(body.shape.size[axis] for axis in case.axes))
+    radius = body.shape.radius(case.dimensions == 2)
     return math.hypot(*body.velocity) + math.hypot(*body.spin) * radius
 
 
 def overlaps(case):
     """No body is inside another or inside the gate."""
     present = placed(case)
-    boxes = [geometry.of_body(body) for body in present]
+    boxes = [places.of_body(body) for body in present]
     faults = []
-    for i, j, shift in geometry.near_pairs(boxes, period(case)):
-        depth = geometry.overlap(boxes[i], boxes[j], shift)
+    for i, j, shift in places.near_pairs(boxes, period(case)):
+        depth = places.overlap(boxes[i], boxes[j], shift)
         if depth > TOUCH:
             faults.append(f"bodies.{present[j].name}: overlaps bodies.{present[i].name} by {depth:.3g} m")
     for body, box in zip(present, boxes, strict=True) if case.gate else ():
-        depth = geometry.overlap(box, _gate_box(case))
+        depth = places.overlap(box, _gate_box(case))
         if depth > TOUCH:
             faults.append(
                 f"bodies.{body.name}: is in the gate, x = {case.gate.min_x!r} to {case.gate.max_x!r}, by {depth:.3g} m"
@@ -142,7 +141,7 @@ def _gate_box(case):
     """Where the gate is at the start; it reaches above the box."""
     gate, low, high = case.gate, case.box.min, case.box.max
     bottom = gate.bottom + gate.speed * max(0.0, case.start - gate.opens)
-    return geometry.upright((gate.min_x, low[1], bottom), (gate.max_x, high[1], max(high[2], bottom) + 1.0))
+    return places.upright((gate.min_x, low[1], bottom), (gate.max_x, high[1], max(high[2], bottom) + 1.0))
 
 
 def gate(case):
@@ -156,19 +155,19 @@ def gate(case):
         if not low[axis] <= value <= high[axis]:
             faults.append(f"gate.{key} = {value!r}: outside the tank; must be {low[axis]!r} to {high[axis]!r}")
     needed = ("x_min", "x_max", "z_min") + (("y_min", "y_max") if case.dimensions == 3 else ())
-    wrong = [f'{face} = "{kind}"' for face in needed if (kind := getattr(case.box.faces, face)) != "wall"]
+    wrong = [f'{face} = "{kind}"' for face in needed if (kind := getattr(case.box.faces, face).kind) != "wall"]
     if wrong:
         faults.append(f'gate: needs walls around it, but box.faces has {", ".join(wrong)}; must be "wall"')
     return faults
 
 
-def gauges(case):
-    """Gauges stand in the box."""
+def sensors(case):
+    """Sensors stand in the box."""
     return [
-        f"output.gauges.{gauge.name}.{'xyz'[axis]} = {value!r}: outside the box; must be "
+        f"output.sensors.{sensor.name}.{'xyz'[axis]} = {value!r}: outside the box; must be "
         f"{case.box.min[axis]!r} to {case.box.max[axis]!r}"
-        for gauge in case.output.gauges
-        for axis, value in enumerate((gauge.x, gauge.y))
+        for sensor in case.output.sensors
+        for axis, value in enumerate((sensor.x, sensor.y))
         if not case.box.min[axis] <= value <= case.box.max[axis]
     ]
 
@@ -176,8 +175,8 @@ def gauges(case):
 def narrow_passages(case):
     """(name, what is beside it, gap, m) of the passages of less than PASSAGE spacings beside bodies that are fixed."""
     fixed, widest = [body for body in placed(case) if body.fixed], PASSAGE * case.spacing
-    boxes = [geometry.of_body(body) for body in fixed]
-    grown = [geometry.TurnedBox(box.centre, box.half + 0.5 * widest, box.axes) for box in boxes]
+    boxes = [places.of_body(body) for body in fixed]
+    grown = [box.grown(0.5 * widest) for box in boxes]
     gaps = [
         (
             i,
@@ -188,16 +187,16 @@ def narrow_passages(case):
         for axis, sign, level in walled_sides(case)
     ]
     gaps += [
-        (i, f"bodies.{fixed[j].name}", -geometry.overlap(boxes[i], boxes[j], shift))
-        for i, j, shift in geometry.near_pairs(grown, period(case))
+        (i, f"bodies.{fixed[j].name}", -places.overlap(boxes[i], boxes[j], shift))
+        for i, j, shift in places.near_pairs(grown, period(case))
     ]
     return [(fixed[i].name, other, gap) for i, other, gap in gaps if TOUCH < gap < widest - TOUCH]
 
 
 def blocked_gauges(case):
     """Names of the gauges that bodies, walls and gate leave no room to read the water level at the start."""
-    solids = [geometry.of_body(body) for body in placed(case)] + ([_gate_box(case)] if case.gate else [])
-    return [gauge.name for gauge in case.output.gauges if not _readable(case, gauge, solids)]
+    solids = [places.of_body(body) for body in placed(case)] + ([_gate_box(case)] if case.gate else [])
+    return [s.name for s in case.output.sensors if isinstance(s, Gauge) and not _readable(case, s, solids)]
 
 
 def _readable(case, gauge, solids):
@@ -206,18 +205,18 @@ def _readable(case, gauge, solids):
     if water is None:
         return True
     # particles stand half a spacing from what is solid
-    half, steps = 0.5 * case.spacing, case.spacing * np.linspace(-GAUGE_REACH, GAUGE_REACH, 61)
+    half, steps = 0.5 * case.spacing, case.spacing * np.linspace(-Gauge.REACH, Gauge.REACH, 61)
     x, y = np.meshgrid(gauge.x + steps, gauge.y + steps if case.dimensions == 3 else gauge.y)
-    within = (x - gauge.x) ** 2 + (y - gauge.y) ** 2 <= (GAUGE_REACH * case.spacing) ** 2
-    places = np.stack([x[within], y[within], np.full(within.sum(), water[1])], axis=1)
-    free = np.ones(len(places), bool)
+    within = (x - gauge.x) ** 2 + (y - gauge.y) ** 2 <= (Gauge.REACH * case.spacing) ** 2
+    points = np.stack([x[within], y[within], np.full(within.sum(), water[1])], axis=1)
+    free = np.ones(len(points), bool)
     for axis in case.axes[:-1]:
         for side, place, sign in (("min", case.box.min[axis], 1.0), ("max", case.box.max[axis], -1.0)):
-            wall = getattr(case.box.faces, f"{'xyz'[axis]}_{side}") == "wall"
-            free &= sign * (places[:, axis] - place) >= (half if wall else 0.0) - TOUCH
+            wall = getattr(case.box.faces, f"{'xyz'[axis]}_{side}").holds_water
+            free &= sign * (points[:, axis] - place) >= (half if wall else 0.0) - TOUCH
     spot = np.array([gauge.x, gauge.y, water[1]])
     for solid in solids:
-        if np.any(np.abs(solid.centre - spot) > solid.reach + 2.0 * GAUGE_REACH * case.spacing):
+        if np.any(np.abs(solid.centre - spot) > solid.reach + 2.0 * Gauge.REACH * case.spacing):
             continue
-        free &= geometry.clearance(solid, places) >= half - TOUCH
+        free &= places.clearance(solid, points) >= half - TOUCH
     return bool(free.any())

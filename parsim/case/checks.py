@@ -18,7 +18,7 @@ def checked(case, messages):
         bodies.speeds,
         bodies.overlaps,
         bodies.gate,
-        bodies.gauges,
+        bodies.sensors,
     )
     for check in (_spacing, _box, _faces, fills.faults, _speed, *of_bodies):
         faults += check(case)
@@ -41,7 +41,7 @@ def doubts(case):
     return (
         told
         + [
-            f"output.gauges.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
+            f"output.sensors.{name}: stands at or between bodies, walls or gate that leave no gap of a spacing, "
             f"{case.spacing!r} m; until they move it reads the water under them"
             for name in bodies.blocked_gauges(case)
         ]
@@ -65,8 +65,8 @@ def _completed(case):
             floated.append(body)
             faults.append(f'bodies.{body.name}.position = "float" as z: {error}')
     middle = (case.box.min[1] + case.box.max[1]) / 2
-    gauges = tuple(g.model_copy(update={"y": middle}) if g.y is None else g for g in case.output.gauges)
-    update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"gauges": gauges})}
+    sensors = tuple(s.model_copy(update={"y": middle}) if s.y is None else s for s in case.output.sensors)
+    update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"sensors": sensors})}
     if case.gate and case.gate.bottom is None:
         update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})
     if case.wall_material is None:
@@ -84,13 +84,13 @@ def _floated(case, body):
         raise ValueError(f"its faces must be level, but angles = {list(body.angles)}; give z as a number")
     if (body.density is None) == (body.mass is None):
         raise ValueError("needs its density or its mass")
-    (bottom, level), thickness = water, body.shape.size[2]
-    draught = thickness * case.density_of(body) / case.water.density
-    if draught >= thickness:
-        raise ValueError(f"density {case.density_of(body):.6g} kg/m3 does not float; must be below that of the water")
+    (bottom, level), density = water, case.density_of(body)
+    if density >= case.water.density:
+        raise ValueError(f"density {density:.6g} kg/m3 does not float; must be below that of the water")
+    draught = body.shape.draught(density, case.water.density)
     if draught > level - bottom:
         raise ValueError(f"draught {draught:.6g} m is more than the depth of water there, {level - bottom:.6g} m")
-    return body.model_copy(update={"position": (x, y, level - draught + thickness / 2)})
+    return body.model_copy(update={"position": (x, y, level - draught + body.shape.half[2])})
 
 
 def _spacing(case):
@@ -144,12 +144,14 @@ def _faces(case):
     faces, faults = case.box.faces, []
     for name in "xyz":
         low, high = getattr(faces, f"{name}_min"), getattr(faces, f"{name}_max")
-        if (low == "periodic") != (high == "periodic"):
+        if low.repeats != high.repeats:
             faults.append(
-                f'box.faces.{name}_min = "{low}", box.faces.{name}_max = "{high}": both or none must be "periodic"'
+                f'box.faces.{name}_min = "{low.kind}", box.faces.{name}_max = "{high.kind}": both or none must be '
+                '"periodic"'
             )
-    if case.dimensions == 2 and (faces.y_min, faces.y_max) != ("wall", "wall"):
-        faults.append(f'box.faces.y_min, y_max = "{faces.y_min}", "{faces.y_max}": a 2D case has none; leave them out')
+    given = faces.y_min.kind, faces.y_max.kind
+    if case.dimensions == 2 and given != ("wall", "wall"):
+        faults.append(f'box.faces.y_min, y_max = "{given[0]}", "{given[1]}": a 2D case has none; leave them out')
     return faults
 
 

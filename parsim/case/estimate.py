@@ -1,11 +1,12 @@
 """What a case will cost, from its lattice alone: particles, memory, steps, time, disk. Nothing is built for it."""
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
-from parsim.geometry import boxes as geometry
+from parsim.case import places
 from parsim.geometry.faces import walled_sides
 from parsim.particles.state import water_bytes
 
@@ -36,7 +37,8 @@ def estimate(case):
     layers = case.layers
     wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
     water, gate = round(_water(case)), _gate(case, layers)
-    body = sum(_samples(case, body, layers) for body in case.bodies)
+    alike = Counter(body.shape for body in case.bodies)
+    body = sum(number * _samples(case, shape, layers) for shape, number in alike.items())
     active = water + body + round(gate * wet) + _walls(case, layers, wet)
     dt = time_step(case)
     return Estimate(
@@ -133,25 +135,20 @@ def _in_gate(case, fill):
     return [max(0.0, inside), *lengths[1:]]
 
 
-def _samples(case, body, layers):
-    """Number of even sample points of a body down to `layers` spacings below its surface."""
-    every, inner = 1, 1
-    for axis in case.axes:
-        count = max(1, round(body.shape.size[axis] / case.spacing))
-        place = (np.arange(count) + 0.5) * body.shape.size[axis] / count
-        below = np.minimum(place, body.shape.size[axis] - place)
-        every, inner = every * count, inner * int(np.count_nonzero(below >= layers * case.spacing))
-    return every - inner
+def _samples(case, shape, layers):
+    """Number of sample points of a body of this shape down to `layers` spacings below its surface."""
+    return len(shape.samples(case.spacing, layers * case.spacing, case.dimensions == 2).offsets)
 
 
 def _immersed(case, body):
     """Volume of a body in the water at the start, in lattice points."""
-    rows = [((np.arange(_PROBES) + 0.5) / _PROBES - 0.5) * length for length in body.shape.size]
-    box = geometry.of_body(body)
-    places = np.stack(np.meshgrid(*rows, indexing="ij"), axis=-1).reshape(-1, 3) @ box.axes.T + box.centre
-    wet = np.zeros(len(places), dtype=bool)
+    rows = [((np.arange(_PROBES) + 0.5) / _PROBES * 2.0 - 1.0) * half for half in body.shape.half]
+    box = places.of_body(body)
+    points = np.stack(np.meshgrid(*rows, indexing="ij"), axis=-1).reshape(-1, 3) @ box.axes.T + box.centre
+    points = points[places.clearance(box, points) == 0.0]
+    wet = np.zeros(len(points), dtype=bool)
     for fill in case.water.fill:
-        wet |= np.all((places >= fill.min) & (places <= fill.max), axis=1)
+        wet |= np.all((points >= fill.min) & (points <= fill.max), axis=1)
     return wet.mean() * body.shape.volume / case.spacing ** len(case.axes)
 
 

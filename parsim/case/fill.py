@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from parsim.geometry import boxes as geometry
+from parsim.case import places
 from parsim.geometry.faces import repeats
 
 TOUCH = 1e-9  # m: a smaller overlap or gap is rounding
@@ -100,11 +100,11 @@ def _speed(case, fill):
 
 
 def _overlaps(fills):
-    boxes = [geometry.upright(fill.min, fill.max) for fill in fills]
+    boxes = [places.upright(fill.min, fill.max) for fill in fills]
     return [
         f"water.fill.{j}: overlaps water.fill.{i}"
-        for i, j, shift in geometry.near_pairs(boxes)
-        if geometry.overlap(boxes[i], boxes[j]) > TOUCH
+        for i, j, shift in places.near_pairs(boxes)
+        if places.overlap(boxes[i], boxes[j]) > TOUCH
     ]
 
 

@@ -11,12 +11,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from parsim.boundary.sides import OPEN, WALL, Side
 from parsim.case.checks import checked, doubts
 from parsim.case.file import read, replaced, written
 from parsim.case.messages import validated
 from parsim.case.types import (
     Count,
-    Face,
     Moderate,
     Name,
     NotNegative,
@@ -31,6 +31,7 @@ from parsim.case.types import (
 )
 from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
+from parsim.observe.sensors import Sensor
 from parsim.solid.laws.settings import FoundationLaw, Law
 from parsim.solid.shapes import Shape
 
@@ -38,12 +39,12 @@ from parsim.solid.shapes import Shape
 class Faces(Table):
     """What each side of the box is. A 2D case has no y faces."""
 
-    x_min: Face = Field("wall", description="upstream side")
-    x_max: Face = Field("wall", description="downstream side")
-    y_min: Face = Field("wall", description="side at small y; 3D only")
-    y_max: Face = Field("wall", description="side at large y; 3D only")
-    z_min: Face = Field("wall", description="floor")
-    z_max: Face = Field("open", description="top")
+    x_min: Side = Field(WALL, description="upstream side")
+    x_max: Side = Field(WALL, description="downstream side")
+    y_min: Side = Field(WALL, description="side at small y; 3D only")
+    y_max: Side = Field(WALL, description="side at large y; 3D only")
+    z_min: Side = Field(WALL, description="floor")
+    z_max: Side = Field(OPEN, description="top")
 
 
 class Box(Table):
@@ -143,20 +144,12 @@ class Run(Table):
     balance_every: Count = Field(1, description="rebuilds between looks at the balance of the ranks")
 
 
-class Gauge(Table):
-    """A place where the water level is written: the top of the highest connected water within 1.5 spacings."""
-
-    name: Name = Field(description="name, used in results: a letter, then letters, digits, _ or -")
-    x: Number = Field(description="place, m")
-    y: Number | None = Field(None, description="place, m; left out: the middle of the box")
-
-
 class Output(Table):
     """What is written, and when."""
 
     frames: Positive = Field(0.05, description="time between frames, s")
     series: Positive = Field(0.005, description="time between rows of the series, s")
-    gauges: tuple[Gauge, ...] = Field((), description="where the water level is written")
+    sensors: tuple[Sensor, ...] = Field((), description="what is measured at places")
     checkpoints: Positive = Field(15.0, description="wall time between checkpoints, minutes; the last two are kept")
     milestones: Positive | None = Field(
         None, description="time between checkpoints that are kept for good, s; left out: none"

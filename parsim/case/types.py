@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, Union, get_args
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Strict, Tag
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Strict, Tag, model_serializer, model_validator
 
 Real = Annotated[float, Strict()]
 Whole = Annotated[int, Strict()]
@@ -17,7 +17,6 @@ Vector = tuple[Number, Number, Number]
 Moderate = Annotated[Real, Field(ge=1e-9, le=1e9)]
 Size = tuple[Moderate, Moderate, Moderate]
 Place = tuple[Number, Number, Number | Literal["float"]]
-Face = Literal["wall", "open", "periodic"]
 CHOICE = "kind"  # the key that names which of several tables is meant
 TAG = f"{CHOICE}="  # begins the steps that pydantic puts into a place for it
 
@@ -26,6 +25,25 @@ class Table(BaseModel):
     """A table of the case file: frozen, unknown keys refused, no silent conversion of types."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class ShortTable(Table):
+    """A table that its `kind` alone may stand for, where that is all there is to say."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named(cls, value):
+        return {CHOICE: value} if isinstance(value, str) else value
+
+    @model_serializer(mode="wrap")
+    def _short(self, handler):
+        data = handler(self)
+        return self.kind if set(data) == {CHOICE} else data
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core, handler):
+        """The schema of the table or its name alone."""
+        return {"anyOf": [{"const": kind_of(cls), "type": "string"}, handler(core)]}
 
 
 def kind_of(table):
@@ -41,10 +59,14 @@ def choice(*tables):
     if not tables[1:]:
         return tables[0]
     default = None if tables[0].model_fields[CHOICE].is_required() else kind_of(tables[0])
+    short = issubclass(tables[0], ShortTable)
 
     def named(value):
-        kind = value.get(CHOICE, default) if isinstance(value, dict) else getattr(value, CHOICE, None)
-        return kind and TAG + str(kind)
+        if isinstance(value, dict):
+            kind = value.get(CHOICE, default)
+        else:
+            kind = getattr(value, CHOICE, value if short else None)
+        return None if kind is None else TAG + str(kind)
 
     tagged = tuple(Annotated[table, Tag(TAG + kind_of(table))] for table in tables)
     return Annotated[Union[tagged], Discriminator(named)]  # noqa: UP007

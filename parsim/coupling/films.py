@@ -8,7 +8,6 @@ feels it as far as a solid lies close in front of it and no particle does, and a
 of its rim where there is water, of all the rim that such water would reach and that is open to it.
 """
 
-import itertools
 import math
 from typing import NamedTuple
 
@@ -20,30 +19,34 @@ from parsim.geometry.nearby import near_bodies
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY
+from parsim.solid.shapes.kernels import ahead
 
 _NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
 _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
 
 
 class Patches(NamedTuple):
-    """Sample, face, whether on a rim, place (n, 3), m, and area, m2, of each patch; of each sample its particle on this
-    rank or -1, its patches by face (samples, 6), and its body."""
+    """Sample, face, whether on a rim, place (n, 3), m, normal (n, 3) and area, m2, of each patch; of each sample its
+    particle on this rank or -1, its patches by face (samples, 6), and its body."""
 
     sample: np.ndarray
     face: np.ndarray
     rim: np.ndarray
     place: np.ndarray
+    normal: np.ndarray
     area: np.ndarray
     row: np.ndarray
     patch: np.ndarray
     body: np.ndarray
 
 
-class Boxes(NamedTuple):
-    """Centre (b, 3), turn (b, 9), half (b, 3) of the bodies; others[first[b]:first[b + 1]] are near b; period, m."""
+class Bodies(NamedTuple):
+    """Centre (b, 3), turn (b, 9), shape (b,), half (b, 3) of the bodies; others[first[b]:first[b + 1]] are near b;
+    period, m."""
 
     centre: np.ndarray
     turn: np.ndarray
+    shape: np.ndarray
     half: np.ndarray
     first: np.ndarray
     others: np.ndarray
@@ -82,30 +85,17 @@ class Films:
         self._layer, self._deep = _layers(lattice)
         self._planes = planes_of_walls(case)
         self._period = float(period(case)[0])
-        self._axes = case.axes
-        self._patches()
-
-    def _patches(self):
-        """One patch per sample of an outer layer and face it belongs to."""
-        s, half = self.samples, self.bodies.half[self.samples.body]
-        count = np.ones_like(half)
-        for a in self._axes:
-            count[:, a] = np.maximum(np.rint(2.0 * half[:, a] / self._spacing), 1.0)
-        parts, outer = [], {}
-        for a, sign in itertools.product(self._axes, (-1, 1)):
-            outer[a, sign] = np.abs(sign * s.offsets[:, a] / half[:, a] - (1.0 - 1.0 / count[:, a])) < 1e-9
-        for a, sign in outer:
-            at = np.flatnonzero(outer[a, sign])
-            rim = np.zeros(at.size, bool)
-            for (b, _), layer in outer.items():
-                rim |= layer[at] & (b != a)
-            place = s.offsets[at].copy()
-            place[:, a] = sign * half[at, a]
-            area = np.prod([2.0 * half[at, b] / count[at, b] for b in self._axes if b != a], axis=0)
-            parts.append((at, np.full(at.size, 2 * a + (sign > 0)), rim, place, area))
-        columns = (np.concatenate(column) for column in zip(*parts, strict=True))
-        self.sample, self._face, self._rim, self._place, self._area = columns
-        self._patch = np.full((len(s), 6), -1)
+        each = samples.of_body
+        first = np.cumsum([0, *(len(s.offsets) for s in each)])
+        self.sample = np.concatenate(
+            [np.zeros(0, int), *(s.sample + at for s, at in zip(each, first[:-1], strict=True))]
+        )
+        self._face = np.concatenate([np.zeros(0, int), *(s.face for s in each)])
+        self._rim = np.concatenate([np.zeros(0, bool), *(s.rim for s in each)])
+        self._place = np.concatenate([np.zeros((0, 3)), *(s.place for s in each)])
+        self._normal = np.concatenate([np.zeros((0, 3)), *(s.normal for s in each)])
+        self._area = np.concatenate([np.zeros(0), *(s.area for s in each)])
+        self._patch = np.full((len(samples), 6), -1)
         self._patch[self.sample, self._face] = np.arange(self.sample.size)
 
     def find(self, domain):
@@ -129,11 +119,20 @@ class Films:
         p, here, b = domain.particles, self._here, self.bodies
         found = Found(*np.zeros((4, here.size, 6)))
         patches = Patches(
-            self.sample, self._face, self._rim, self._place, self._area, self._row, self._patch, self.samples.body
+            self.sample,
+            self._face,
+            self._rim,
+            self._place,
+            self._normal,
+            self._area,
+            self._row,
+            self._patch,
+            self.samples.body,
         )
-        boxes = Boxes(position, matrices(quaternion).reshape(-1, 9), b.half, self._first, self._others, self._period)
+        turn = matrices(quaternion).reshape(-1, 9)
+        bodies = Bodies(position, turn, b.shape, b.half, self._first, self._others, self._period)
         water = Water(p.p, self._head, self._spacing, self._layer, self._deep)
-        solids = boxes, self._planes, plate
+        solids = bodies, self._planes, plate
         patch_loads(here, patches, near.lists, p.place, solids, (water, self._weight), b.film, found)
         body = self.samples.body[self.sample[here]].astype(np.int64)
         return np.concatenate(found), np.concatenate([body + k * len(b) for k in range(4)])
@@ -168,28 +167,14 @@ def gap_to_plane(x, n, plane):
 
 
 @kernel
-def gap_to_box(x, n, half, behind):
-    """Distance along n from x, both in the frame of the box, to its surface, from `behind` the point on; else inf."""
-    enter, leave = -behind, np.inf
-    for a in range(3):
-        if abs(n[a]) < 1e-12:
-            if abs(x[a]) > half[a]:
-                return np.inf
-            continue
-        t0, t1 = (-half[a] - x[a]) / n[a], (half[a] - x[a]) / n[a]
-        enter, leave = max(enter, min(t0, t1)), min(leave, max(t0, t1))
-    return enter if enter <= leave else np.inf
-
-
-@kernel
 def gap_ahead(x, n, b, solids, spacing):
     """Distance from x (3,) on body `b` along n (3,) to the nearest wall, gate or other body; inf where there is none.
 
-    `solids`: Boxes, the walls' planes, and the gate (4,): its low and high x, the height of its lower edge, and 1 where
-    there is one.
+    `solids`: Bodies, the walls' planes, and the gate (4,): its low and high x, the height of its lower edge, and 1
+    where there is one.
     """
-    boxes, planes, gate = solids
-    centre, turn, half, first, others, period = boxes
+    bodies, planes, gate = solids
+    centre, turn, shape, half, first, others, period = bodies
     gap = np.inf
     for w in range(len(planes)):
         gap = min(gap, gap_to_plane(x, n, planes[w]))
@@ -202,7 +187,8 @@ def gap_ahead(x, n, b, solids, spacing):
         if period < np.inf:
             dx -= period * np.rint(dx / period)
         place = to_body(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
-        gap = min(gap, gap_to_box(place, to_body(turn[d], n[0], n[1], n[2]), half[d], spacing))
+        along = to_body(turn[d], n[0], n[1], n[2])
+        gap = min(gap, ahead(shape[d], place, along, (half[d, 0], half[d, 1], half[d, 2]), spacing))
     return gap
 
 
@@ -232,7 +218,7 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
 
     `points`: places of the particles; `solids`: see `gap_ahead`; `water`: Water and its weight; `film`: see `Bodies`.
     """
-    sample, face, on_rim, place, area, row, patch, body = patches
+    sample, face, on_rim, place, normal, area, row, patch, body = patches
     px, py, pz = points
     centre, turn = solids[0].centre, solids[0].turn
     (pressure, head, spacing, layer, deep), weight = water
@@ -243,12 +229,12 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
         b = body[s]
         lx, ly, lz = to_global(turn[b], place[m, 0], place[m, 1], place[m, 2])
         x = (centre[b, 0] + lx, centre[b, 1] + ly, centre[b, 2] + lz)
-        n = normal(turn[b], f)
+        n = to_global(turn[b], normal[m, 0], normal[m, 1], normal[m, 2])
         i = row[s]
-        every, ahead = 0.0, 0.0
+        every, before = 0.0, 0.0
         if i >= 0:
-            every, ahead = water_at(i, x, n, lists, points, weight)
-            ahead *= spacing / deep
+            every, before = water_at(i, x, n, lists, points, weight)
+            before *= spacing / deep
         value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
         if on_rim[m]:
             share = min(_FEED * every / layer, 1.0) if i >= 0 and pressure[i] > 0.0 else 0.0
@@ -263,21 +249,15 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
                         continue
                     ex, ey, ez = to_global(turn[b], place[c, 0], place[c, 1], place[c, 2])
                     edge = (centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez)
-                    gap = gap_ahead(edge, normal(turn[b], g), b, solids, spacing)
+                    out = to_global(turn[b], normal[c, 0], normal[c, 1], normal[c, 2])
+                    gap = gap_ahead(edge, out, b, solids, spacing)
                     if gap > _FAR * spacing:
                         dry[k, f] = 1.0 - share
-        if value <= 0.0 or film[b, 1 + f] == 0.0 or ahead >= 1.0:
+        if value <= 0.0 or film[b, 1 + f] == 0.0 or before >= 1.0:
             continue
         gap = gap_ahead(x, n, b, solids, spacing)
         closed = min(max((_FAR - gap / spacing) / (_FAR - _NEAR), 0.0), 1.0)
-        force = -value * film[b, 1 + f] * area[m] * closed * (1.0 - ahead)
+        force = -value * film[b, 1 + f] * area[m] * closed * (1.0 - before)
         fx, fy, fz = force * n[0], force * n[1], force * n[2]
         load[k, 0], load[k, 1], load[k, 2] = fx, fy, fz
         load[k, 3], load[k, 4], load[k, 5] = ly * fz - lz * fy, lz * fx - lx * fz, lx * fy - ly * fx
-
-
-@kernel
-def normal(t, face):
-    """Outward normal of a face, global axes; t (9,), the rotation matrix by rows."""
-    a, sign = face // 2, 2.0 * (face % 2) - 1.0
-    return sign * t[a], sign * t[3 + a], sign * t[6 + a]

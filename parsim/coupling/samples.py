@@ -1,17 +1,17 @@
 """Water on bodies, bodies on water: the samples that a body shows to the water, and the loads they bring back."""
 
-import math
+import functools
 from typing import NamedTuple
 
 import numpy as np
 
 from parsim.errors import InputError
-from parsim.geometry.inside import nearest_face
-from parsim.geometry.rotation import matrices
+from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, Particles, make_id
 from parsim.particles.tables import Vectors
 from parsim.solid.acceleration import Given, accelerate_bodies
+from parsim.solid.shapes.kernels import distance
 
 _WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
 
@@ -32,36 +32,18 @@ class BodySamples:
 
     Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
     the pose, never integrated. `here`: numbers of those that lay in this slab when last asked for. `units` (8, 6) are
-    those of the sums in `loads`, by their rows for one body: see `Domain.sum`.
+    those of the sums in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the `Samples` of each body.
     """
 
     def __init__(self, case, bodies, layers, units):
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
-        self._spacing, self._planar = case.spacing, case.dimensions == 2
-        self._axes, self._way_out = np.array(case.axes), _WAY_OUT * case.spacing / case.speed
+        self._used, self._way_out = np.isin(range(3), case.axes), _WAY_OUT * case.spacing / case.speed
         self._units = units
-        offsets, shares, owners = [], [], []
-        for b, half in enumerate(bodies.half):
-            grid, share = self._grid(half, case.spacing * layers)
-            offsets.append(grid)
-            shares.append(np.full(len(grid), share))
-            owners.append(np.full(len(grid), b, np.int32))
-        self.offsets = np.concatenate([np.zeros((0, 3)), *offsets])
-        self.scale = np.concatenate([np.zeros(0), *shares])
-        self.body = np.concatenate([np.zeros(0, np.int32), *owners])
-
-    def _grid(self, half, depth):
-        """Offsets (n, 3) of one box's samples, m, and the share of a lattice volume that each carries."""
-        l0 = self._spacing
-        counts = [max(round(2.0 * h / l0), 1) for h in half]
-        if self._planar:
-            counts[1] = 1
-        axes = [((np.arange(n) + 0.5) / n * 2.0 - 1.0) * h for n, h in zip(counts, half, strict=True)]
-        grid = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
-        used = [0, 2] if self._planar else [0, 1, 2]
-        inner = np.min(half[used] - np.abs(grid[:, used]), axis=1)
-        share = math.prod(2.0 * half[a] / counts[a] / l0 for a in used)
-        return grid[inner < depth], share
+        sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
+        self.of_body = [sampled(shape) for shape in bodies.shapes]
+        self.offsets = np.concatenate([np.zeros((0, 3)), *(s.offsets for s in self.of_body)])
+        self.scale = np.concatenate([np.zeros(0), *(s.shares for s in self.of_body)])
+        self.body = np.repeat(np.arange(len(bodies), dtype=np.int32), [len(s.offsets) for s in self.of_body])
 
     def __len__(self):
         return len(self.offsets)
@@ -152,8 +134,8 @@ class BodySamples:
         Water one layer thick has no pressure, so it can sink into what it lies on. The impulse is not given back: these
         are single particles.
         """
-        motion = self._motion(position, quaternion)
-        expel(self._beside, near.lists, p.body, motion, self.bodies.half, self._axes, self._way_out, p.kinematics)
+        motion, shapes = self._motion(position, quaternion), (self.bodies.shape, self.bodies.half, self._used)
+        expel(self._beside, near.lists, p.body, motion, shapes, self._way_out, p.kinematics)
 
 
 @kernel
@@ -194,8 +176,12 @@ def place_samples(kind, body, sample, offsets, motion, kinematics, out):
 
 
 @kernel
-def expel(at, lists, body, motion, half, axes, way_out, kinematics):
-    """Velocity of fluid inside a body: outward through the nearest face, at least its depth in `way_out` s."""
+def expel(at, lists, body, motion, shapes, way_out, kinematics):
+    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in `way_out` s.
+
+    `shapes`: numbers (b,), half edges (b, 3), m, and the axes used (3,).
+    """
+    shape, half, used = shapes
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion
     x, y, z = kinematics.place
@@ -207,11 +193,13 @@ def expel(at, lists, body, motion, half, axes, way_out, kinematics):
             if b < 0 or b == last:
                 continue
             last = b
-            depth, axis, sign = nearest_face((x[i], y[i], z[i]), b, position, turn, half, axes)
+            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
+            t = turn[b].ravel()
+            high, n = distance(shape[b], to_body(t, dx, dy, dz), (half[b, 0], half[b, 1], half[b, 2]), used)
+            depth = -high
             if depth <= 0.0:
                 continue
-            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
-            nx, ny, nz = sign * turn[b, 0, axis], sign * turn[b, 1, axis], sign * turn[b, 2, axis]
+            nx, ny, nz = to_global(t, n[0], n[1], n[2])
             p, q, r = spin[b]
             away = (
                 (u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx

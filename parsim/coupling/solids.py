@@ -20,11 +20,11 @@ class Solids:
     def __init__(self, case, layers, lattice, timers):
         self.timers, self._scales = timers, scales(case)
         self.bodies = from_case(case)
-        self.contacts = Contacts(self.bodies, case)
         self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
         self.films = Films(case, self.bodies, self.samples, lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
+        self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [])
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._load = None  # of the water in this step, (bodies, 6)
 

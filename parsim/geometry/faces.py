@@ -7,30 +7,38 @@ import numpy as np
 SIDES = (("x_min", "x_max"), ("y_min", "y_max"), ("z_min", "z_max"))
 
 
-def walled_sides(case):
-    """Axis, side (-1 low, 1 high) and level, m, of each side of the box that is a wall."""
+def walled_sides(case, to="water"):
+    """Axis, side (-1 low, 1 high) and level, m, of each side of the box that is a wall to "water" or to "bodies"."""
     for axis in case.axes:
         for sign, name, level in zip((-1, 1), SIDES[axis], (case.box.min[axis], case.box.max[axis]), strict=True):
-            if getattr(case.box.faces, name) == "wall":
+            if _holds(case, name, to):
                 yield axis, sign, level
 
 
-def ends_of_walls(case):
-    """Lowest and highest corner (3,), m, of where there are walls: they end at the open sides, and only there."""
-    faces = case.box.faces
-    low = [case.box.min[a] if getattr(faces, low) == "open" else -np.inf for a, (low, _) in enumerate(SIDES)]
-    high = [case.box.max[a] if getattr(faces, high) == "open" else np.inf for a, (_, high) in enumerate(SIDES)]
+def _holds(case, name, to):
+    side = getattr(case.box.faces, name)
+    return {"water": side.holds_water, "bodies": side.holds_bodies}[to]
+
+
+def ends_of_walls(case, to="water"):
+    """Lowest and highest corner (3,), m, of where there are walls: they end where things leave, and only there."""
+
+    def leaves(name):
+        return not (_holds(case, name, to) or getattr(case.box.faces, name).repeats)
+
+    low = [case.box.min[a] if leaves(low) else -np.inf for a, (low, _) in enumerate(SIDES)]
+    high = [case.box.max[a] if leaves(high) else np.inf for a, (_, high) in enumerate(SIDES)]
     return np.array(low), np.array(high)
 
 
-def planes_of_walls(case):
+def planes_of_walls(case, to="water"):
     """The walls as kernels take them, (n, 10): normal inwards, level, lowest and highest corner of where they are, m.
 
     A point x is in front of one where normal . x > level.
     """
-    planes = list(walled_sides(case))
+    planes = list(walled_sides(case, to))
     walls = np.zeros((len(planes), 10))
-    walls[:, 4:] = np.concatenate(ends_of_walls(case))
+    walls[:, 4:] = np.concatenate(ends_of_walls(case, to))
     for row, (axis, side, level) in enumerate(planes):
         walls[row, axis], walls[row, 3] = -side, -side * level
     return walls
@@ -39,7 +47,7 @@ def planes_of_walls(case):
 def repeats(case):
     """Whether the box repeats along x, y and z: three bool."""
     faces = [getattr(case.box.faces, low) for low, _ in SIDES]
-    return tuple(axis in case.axes and face == "periodic" for axis, face in enumerate(faces))
+    return tuple(axis in case.axes and face.repeats for axis, face in enumerate(faces))
 
 
 def period(case):

@@ -118,7 +118,8 @@ def source_hash():
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parents[1].rglob("*.py")):
         text = path.read_bytes()
-        if b"parsim.machine.jit" in text or b"@implements" in text or path.name in ("jit.py", "variant.py"):
+        marks = b"parsim.machine.jit", b"@implements", b"@compiled"
+        if any(word in text for word in marks) or path.name in ("jit.py", "variant.py"):
             digest.update(f"{path.absolute()} {path.stat().st_mtime_ns}".encode() + text)
     return digest.hexdigest()[:16]
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from parsim.geometry.faces import planes_of_walls
-from parsim.geometry.inside import nearest_face
-from parsim.geometry.rotation import matrices
+from parsim.geometry.rotation import matrices, to_body
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 from parsim.particles.state import SURFACE
+from parsim.solid.shapes.kernels import distance
 
 
 class Counts:
@@ -28,7 +28,7 @@ class Counts:
     )
 
     def __init__(self, case):
-        self._walls, self._axes, self._slack = planes_of_walls(case), np.array(case.axes), 0.25 * case.spacing
+        self._walls, self._used, self._slack = planes_of_walls(case), np.isin(range(3), case.axes), 0.25 * case.spacing
 
     def rows(self, s):
         """See `Observer`."""
@@ -38,9 +38,10 @@ class Counts:
         bodies = (
             s.bodies.position[order],
             matrices(s.bodies.quaternion[order]),
+            s.bodies.shape[order],
             s.bodies.half[order],
             s.bodies.radius.max(initial=0.0),
-            self._axes,
+            self._used,
         )
         misplaced(at, p.place, self._walls, bodies, gate, self._slack, count)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
@@ -53,11 +54,11 @@ class Counts:
 def misplaced(at, place, walls, bodies, gate, slack, count):
     """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
 
-    walls: see `geometry.faces.planes_of_walls`; bodies in the order of their x: centre (b, 3), turn (b, 3, 3), half
-    (b, 3), the largest radius, and axes; gate: its low and high x, and where it ends below, m.
+    walls: see `geometry.faces.planes_of_walls`; bodies in the order of their x: centre (b, 3), turn (b, 3, 3), shape
+    (b,), half (b, 3), the largest radius, and the axes used (3,); gate: its low and high x, and where it ends below, m.
     """
     x, y, z = place
-    centre, turn, half, radius, axes = bodies
+    centre, turn, shape, half, radius, used = bodies
     along = centre[:, 0].copy()
     low, high, barrier = gate
     for i in at:
@@ -71,7 +72,9 @@ def misplaced(at, place, walls, bodies, gate, slack, count):
         count[0] += behind
         b = np.searchsorted(along, r[0] - radius)
         while b < along.size and along[b] <= r[0] + radius:
-            count[1] += nearest_face(r, b, centre, turn, half, axes)[0] > slack
+            dx, dy, dz = r[0] - centre[b, 0], r[1] - centre[b, 1], r[2] - centre[b, 2]
+            local = to_body(turn[b].ravel(), dx, dy, dz)
+            count[1] += distance(shape[b], local, (half[b, 0], half[b, 1], half[b, 2]), used)[0] < -slack
             b += 1
         count[2] += low + slack < r[0] < high - slack and r[2] > barrier + slack
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from parsim.case.bodies import GAUGE_REACH
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
+from parsim.observe.sensors import Gauge
 from parsim.particles.state import DETACHED
 
 
@@ -16,8 +16,9 @@ class Gauges:
 
     def __init__(self, case):
         middle = 0.5 * (case.box.min[1] + case.box.max[1])
-        self._names = [gauge.name for gauge in case.output.gauges]
-        places = [[gauge.x, middle if gauge.y is None else gauge.y] for gauge in case.output.gauges]
+        gauges = [sensor for sensor in case.output.sensors if isinstance(sensor, Gauge)]
+        self._names = [gauge.name for gauge in gauges]
+        places = [[gauge.x, middle if gauge.y is None else gauge.y] for gauge in gauges]
         self._places, self._spacing = np.array(places).reshape(-1, 2), case.spacing
         self._flat = case.dimensions == 2
 
@@ -26,7 +27,7 @@ class Gauges:
         if not self._names:
             return []
         p, top = s.domain.particles, np.full(len(self._names), -np.inf)
-        levels(s.near.fluid, p.surface, p.place, self._places, GAUGE_REACH * self._spacing, self._flat, top)
+        levels(s.near.fluid, p.surface, p.place, self._places, Gauge.REACH * self._spacing, self._flat, top)
         top = s.domain.max(*top)
         level = np.where(np.isfinite(top), top + 0.5 * self._spacing, np.nan)
         return [

@@ -121,7 +121,7 @@ class Folder:
         yield from [path for path in checkpoint.listed(self.path) if checkpoint.step_of(path) > account["step_count"]]
 
     def _warn_of_missing(self, account):
-        from parsim.observe import TABLES  # brings numba along, whose settings a run makes first
+        from parsim.observe.observers import TABLES  # brings numba along, whose settings a run makes first
 
         names = [name for entries in account["frames"].values() for name, _ in entries]
         missing = [name for name in names if not (self.path / name).is_file()]

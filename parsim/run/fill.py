@@ -27,8 +27,8 @@ def scatter(index):
 def beside_bodies(points, case, bodies):
     """Numbers (n,) of the points of a Lattice that lie in bodies or within a spacing of them."""
     found = [np.zeros(0, np.int64)]
-    for centre, half in zip(bodies.position, bodies.half, strict=True):
-        reach = np.sqrt(sum(half[a] ** 2 for a in case.axes)) + 2.0 * case.spacing
+    for centre, radius in zip(bodies.position, bodies.radius, strict=True):
+        reach = radius + 2.0 * case.spacing
         found.append(
             points.within(
                 *((np.abs(row - centre[a]) < reach) | (a not in case.axes) for a, row in enumerate(points.rows))

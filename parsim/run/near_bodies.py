@@ -1,6 +1,5 @@
 """What is solid beside given points: how near the next body is, and whether bodies take the place."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,17 +8,19 @@ from parsim.geometry.faces import walled_sides
 from parsim.geometry.nearby import near_points
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
+from parsim.solid.shapes.kernels import distance
 
 _OPPOSITE = -0.9  # cosine below which two outward directions face each other across a gap
 _MARGIN = 2.0  # spacings beyond a body within which its points are looked for
 _MOST = 16  # bodies that are close to one point
 
 
-class Boxes(NamedTuple):
-    """Position, turn by rows (b, 9), half edges of the bodies; which of the axes they have faces along (3,)."""
+class Bodies(NamedTuple):
+    """Position, turn by rows (b, 9), shape, half edges of the bodies; which of the axes they have faces along (3,)."""
 
     position: np.ndarray
     turn: np.ndarray
+    shape: np.ndarray
     half: np.ndarray
     used: np.ndarray
 
@@ -29,7 +30,8 @@ class Beside:
 
     def __init__(self, points, case, bodies):
         used = np.isin(range(3), case.axes)
-        self._boxes = Boxes(bodies.position, matrices(bodies.quaternion).reshape(-1, 9), bodies.half, used)
+        turn = matrices(bodies.quaternion).reshape(-1, 9)
+        self._bodies = Bodies(bodies.position, turn, bodies.shape, bodies.half, used)
         self._planes, self._spacing = _planes(case), case.spacing
         reach = bodies.radius + _MARGIN * case.spacing
         self._first, self._near = near_points(points, bodies.position, reach, used)
@@ -38,7 +40,7 @@ class Beside:
         """Distance to the nearest body (n,), m, inf where none is near, and whether a point is in a body or in a gap
         narrower than the spacing (n,)."""
         nearest, taken = np.empty(len(points)), np.empty(len(points), bool)
-        look(points, (self._first, self._near), self._boxes, self._planes, self._spacing, nearest, taken)
+        look(points, (self._first, self._near), self._bodies, self._planes, self._spacing, nearest, taken)
         return nearest, taken
 
 
@@ -51,33 +53,24 @@ def _planes(case):
 
 
 @kernel
-def away(p, b, boxes):
-    """Signed distance of p (3,) from box `b`, m, and the outward direction (3,), zero inside."""
-    c, t, h, used = boxes.position[b], boxes.turn[b], boxes.half[b], boxes.used
+def away(p, b, bodies):
+    """Signed distance of p (3,) from body `b`, m, and the outward direction (3,)."""
+    c, t, h = bodies.position[b], bodies.turn[b], bodies.half[b]
     local = to_body(t, p[0] - c[0], p[1] - c[1], p[2] - c[2])
-    square, deepest, out = 0.0, -np.inf, np.zeros(3)
-    for a in range(3):
-        if used[a]:
-            over = abs(local[a]) - h[a]
-            deepest = max(deepest, over)
-            if over > 0.0:
-                square += over * over
-                out[a] = over if local[a] > 0.0 else -over
-    length = math.sqrt(square)
-    scale = 1.0 / length if length > 0.0 else 1.0
-    return length + min(deepest, 0.0), to_global(t, out[0] * scale, out[1] * scale, out[2] * scale)
+    high, out = distance(bodies.shape[b], local, (h[0], h[1], h[2]), bodies.used)
+    return high, to_global(t, out[0], out[1], out[2])
 
 
 @kernel
-def look(points, near, boxes, planes, spacing, nearest, taken):
+def look(points, near, bodies, planes, spacing, nearest, taken):
     """See `Beside.look`; near: see `near_points`."""
-    first, bodies = near
+    first, others = near
     far, ways = np.empty(_MOST), np.empty((_MOST, 3))
     for k in range(len(points)):
         p, count = (points[k, 0], points[k, 1], points[k, 2]), 0
         nearest[k] = np.inf
         for t in range(first[k], first[k + 1]):
-            distance, way = away(p, bodies[t], boxes)
+            distance, way = away(p, others[t], bodies)
             nearest[k] = min(nearest[k], distance)
             if distance < spacing and count < _MOST:
                 far[count], ways[count, 0], ways[count, 1], ways[count, 2] = distance, way[0], way[1], way[2]

@@ -14,8 +14,8 @@ import numpy as np
 from parsim import __version__
 from parsim.errors import WriteError
 from parsim.machine import variant
-from parsim.observe import OBSERVERS, TABLES
 from parsim.observe.lost import Lost
+from parsim.observe.observers import OBSERVERS, TABLES
 from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
 from parsim.output.reader import MARK
 from parsim.output.series import Table, next_multiple

@@ -35,7 +35,7 @@ _PERIODIC = {
     "box": {"max": [0.2, 0.06, 0.1], "faces": {"y_min": "periodic", "y_max": "periodic"}},
     "gate": None,
     "bodies": [],
-    "output": {"gauges": [{"name": "one", "x": 0.05}]},
+    "output": {"sensors": [{"name": "one", "x": 0.05}]},
 }
 
 
@@ -141,7 +141,7 @@ def exercise():
     from parsim.case.model import parse
     from parsim.domain.comm import Comm
     from parsim.fluid.weights import WEIGHTS
-    from parsim.observe import rows_now
+    from parsim.observe.observers import rows_now
     from parsim.run.simulation import Simulation
 
     weights = [_CASE | {"water": _CASE["water"] | {"scheme": {"weight": name}}} for name in WEIGHTS]

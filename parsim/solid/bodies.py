@@ -6,7 +6,7 @@ import numpy as np
 
 from parsim.geometry.rotation import free_turn, from_angles, matrices, matrix, scaled
 from parsim.machine.jit import kernel
-from parsim.solid.shapes.box import inertia_of_box, volume_of_box
+from parsim.solid.shapes.kernels import reach
 
 _KEPT = (
     "position",
@@ -22,17 +22,15 @@ _KEPT = (
     "left",
 )
 _FAR = 1e6  # m that what has been taken out is moved on, out of reach of everything
-_SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners of a box
-_QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
 
 
 class Bodies:
     """All bodies as arrays of nb rows; a 2D run is per metre of width and turns about y only (`planar`).
 
-    mass (nb,), kg; inertia (nb, 3), principal moments in the body frame, kg m2; half (nb, 3), half edges of the box,
-    m; radius (nb,), of the ball around it, m; volume (nb,), m3; material (nb,), number of the material; fixed (nb,),
-    never moves; released (nb,), s, held in place before and then let go from rest. position (nb, 3), m; quaternion
-    (nb, 4), body to global; velocity (nb, 3), m/s; spin (nb, 3), global axes, rad/s.
+    shapes: tables of `solid.shapes`; of these shape (nb,), NUMBER, half (nb, 3), m, radius (nb,), m, volume (nb,), m3.
+    mass (nb,), kg; inertia (nb, 3), principal moments in the body frame, kg m2; material (nb,), number of the material;
+    fixed (nb,), never moves; released (nb,), s, held in place before and then let go from rest. position (nb, 3), m;
+    quaternion (nb, 4), body to global; velocity (nb, 3), m/s; spin (nb, 3), global axes, rad/s.
     Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
     force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin, and how well
     each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out, inf before.
@@ -40,7 +38,7 @@ class Bodies:
 
     def __init__(
         self,
-        half,
+        shapes,
         mass,
         position,
         quaternion=None,
@@ -53,14 +51,17 @@ class Bodies:
         released=-math.inf,
         planar=False,
     ):
-        self.half = np.array(half, float).reshape(-1, 3)
-        count, self.planar = len(self.half), bool(planar)
+        self.shapes, self.planar = list(shapes), bool(planar)
+        count = len(self.shapes)
+        self.shape = np.array([s.NUMBER for s in self.shapes], np.int64)
+        self.half = np.array([s.half for s in self.shapes], float).reshape(-1, 3)
         self.names = list(names) if names is not None else [f"body{b}" for b in range(count)]
         self.mass, self.released = _column(mass, count), _column(released, count)
         self.fixed, self.material = _column(fixed, count, bool), _column(material, count, np.int64)
-        moving = [0, 2] if planar else [0, 1, 2]  # the metre across a plane turns with nothing
-        self.radius = np.sqrt((self.half[:, moving] ** 2).sum(1))
-        self.volume, self.inertia = volume_of_box(self.half), inertia_of_box(self.half, self.mass)
+        self.radius = np.array([s.radius(self.planar) for s in self.shapes], float)
+        self.volume = np.array([s.volume for s in self.shapes], float)
+        moments = [s.inertia(mass) for s, mass in zip(self.shapes, self.mass, strict=True)]
+        self.inertia = np.array(moments, float).reshape(-1, 3)
         self.position, self.velocity, self.spin = (_rows(v, count, 3) for v in (position, velocity, spin))
         still = self.fixed | (self.released > -math.inf)
         self.velocity[still], self.spin[still] = 0.0, 0.0
@@ -97,7 +98,7 @@ class Bodies:
         """
         if not len(self):
             return np.zeros(0, int), np.zeros((0, 6))
-        reach = (np.abs(matrices(self.quaternion)) * self.half[:, None]).sum(2)
+        reach = reaches(self.shape, self.half, matrices(self.quaternion))
         below, above = self.position + reach < low, self.position - reach > high
         at = np.flatnonzero((below | above).any(1) & ~self.gone)
         rows = np.hstack([self.position[at], self.velocity[at]])
@@ -131,16 +132,19 @@ class Bodies:
         return position, quaternion
 
     def surface(self):
-        """The closed surface of what is there: points (8 n, 3), m; quads (6 n, 4), anticlockwise seen from outside.
+        """The closed surface of what is there: points (n, 3), m; quads (m, 4), anticlockwise seen from outside.
 
-        Also the body of each quad, (6 n,).
+        Also the body of each quad, (m,).
         """
-        turn, there = matrices(self.quaternion), np.flatnonzero(~self.gone)
-        points = np.array(
-            [self.position[b] + (_SIGNS * self.half[b] * turn[b][:, None]).sum(-1).T for b in there]
-        ).reshape(-1, 3)
-        quads = (_QUADS + 8 * np.arange(there.size)[:, None, None]).reshape(-1, 4)
-        return points, quads, np.repeat(there, 6)
+        turn, first = matrices(self.quaternion), 0
+        points, quads, owners = [np.zeros((0, 3))], [np.zeros((0, 4), np.int64)], [np.zeros(0, np.int64)]
+        for b in np.flatnonzero(~self.gone):
+            corners, faces = self.shapes[b].surface()
+            points.append(self.position[b] + (corners * turn[b][:, None]).sum(-1).T)
+            quads.append(faces + first)
+            owners.append(np.full(len(faces), b))
+            first += len(corners)
+        return np.concatenate(points), np.concatenate(quads), np.concatenate(owners)
 
     def surface_speed(self):
         """Bound of the speed of any point of any body, m/s: |v| + |w| R."""
@@ -184,7 +188,7 @@ def from_case(case):
     """The bodies of a case, at its start."""
     bodies, numbers = case.bodies, {name: number for number, name in enumerate(case.materials)}
     return Bodies(
-        half=[[0.5 * edge for edge in b.shape.size] for b in bodies],
+        shapes=[b.shape for b in bodies],
         mass=[case.mass_of(b) for b in bodies],
         position=[b.position for b in bodies],
         quaternion=[from_angles(b.angles) for b in bodies],
@@ -206,6 +210,17 @@ def _rows(value, count, width):
     value = np.asarray(value, float)
     value = value if value.size else value.reshape(0, width)
     return np.array(np.broadcast_to(value, (count, width)), order="C")  # kernels are compiled for this layout
+
+
+@kernel
+def reaches(shape, half, turn):
+    """Half extents (b, 3) along the axes of space, m, of bodies turned by `turn` (b, 3, 3)."""
+    out = np.empty((len(half), 3))
+    for b in range(len(half)):
+        for a in range(3):
+            along = (turn[b, a, 0], turn[b, a, 1], turn[b, a, 2])
+            out[b, a] = reach(shape[b], along, (half[b, 0], half[b, 1], half[b, 2]))
+    return out
 
 
 @kernel

@@ -1,10 +1,9 @@
-"""Contacts of rigid bodies with each other, the walls and the gate, and the motion of the bodies under all loads."""
+"""Contacts of rigid bodies with each other, walls and what is driven, and their motion under all loads."""
 
 import math
 
 import numpy as np
 
-from parsim.boundary.gate import Gate
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.solid import table
 from parsim.solid.laws.foundation import pair_tables
@@ -23,29 +22,30 @@ from parsim.solid.search import (
     room_for_slots,
     sort_pairs,
 )
-from parsim.solid.shapes.box import elements_of
+from parsim.solid.shapes import elements_of
 from parsim.solid.substeps import advance, elastic
 from parsim.solid.tanks import LOST, recall_tanks, room_for_tanks
 
 _SHARE = 0.1  # of the smallest edge that a body may move in one step
-_FAR = 1e3  # half edges of the gate over the size of the box: it has neither ends nor a top
 
 
 class Contacts:
     """Moves the bodies of a case, deterministically: every rank does the same and gets the same bits.
 
-    Attributes: dissipated, J, energy lost in contacts so far; gate_work, J, work of the gate on bodies and on water so
+    driven: plates with half (3,), m, `centre` and `velocity` at a time (`parsim.boundary.gate.Gate`).
+    Attributes: dissipated, J, energy lost in contacts so far; gate_work, J, work of these on bodies and on water so
     far; count, elements that touch; steps, sub-steps of the last step.
     """
 
-    def __init__(self, bodies, case, gate=None):
-        self.bodies, self._gravity = bodies, np.array(case.gravity, float)
+    def __init__(self, bodies, case, driven=()):
+        self.bodies, self._driven, self._gravity = bodies, list(driven), np.array(case.gravity, float)
         self._steps_per_contact = case.contacts.steps_per_contact
-        self._gate = gate or (Gate(case) if case.gate is not None else None)
-        self._walls, self._period = planes_of_walls(case), period(case)
+        material = list(case.materials).index(case.wall_material) if case.materials else 0
+        self._walls, self._period = _of_material(planes_of_walls(case, "bodies"), material), period(case)
         self._law = pair_tables(list(case.materials.values()), _depth(case, bodies))
-        self._first, self._elements, cell = elements_of(bodies)
-        self._table = _table(bodies, cell, case, self._gate)
+        first, self._elements, cell = elements_of(bodies)
+        self._first = np.append(first, np.full(len(self._driven), first[-1]))  # what is driven has none
+        self._table = _table(bodies, cell, self._driven, material)
         self._pairs, self._shift = room_for_pairs(64)
         self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
@@ -105,25 +105,33 @@ class Contacts:
 
     def _prepare(self, bodies, held, time, dt):
         """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m)."""
-        m, count = self._table, len(bodies)
-        if self._gate is not None:
-            m[count, table.POSITION + 2] = self._gate.bottom(time) + m[count, table.HALF + 2]
-            m[count, table.VELOCITY + 2] = self._gate.velocity(time)
+        m = self._table
+        for row, plate in enumerate(self._driven, len(bodies)):
+            m[row, table.POSITION : table.POSITION + 3] = plate.centre(time)
+            m[row, table.VELOCITY + 2] = plate.velocity(time)
         begin(m, _pose(bodies), bodies.mass, held, bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
         number, reach = self._list_pairs(bodies.planar, dt)
         return number, self._list_slots(number, reach), reach
 
     def _touch(self):
         return Touch(
-            self._elements, self._walls, self._law, self._pairs, self._shift, self._marks, self._slots, self._tanks
+            self._first,
+            self._elements,
+            self._walls,
+            self._law,
+            self._pairs,
+            self._shift,
+            self._marks,
+            self._slots,
+            self._tanks,
         )
 
     def _list_pairs(self, planar, dt):
-        place = self._table[:-1, table.POSITION].copy()
+        place = self._table[: len(self.bodies), table.POSITION].copy()
         if self._period[0] < math.inf:
             place = place - self._period[0] * np.floor(place / self._period[0])
         order = np.argsort(place, kind="stable")
-        find = self._period, planar, self._gate is not None, dt, place, order
+        find = self._period, planar, dt, place, order
         number, reach = near_pairs(self._table, self._touch(), *find)
         if number > len(self._pairs):
             self._pairs, self._shift = room_for_pairs(2 * number)
@@ -138,10 +146,10 @@ class Contacts:
     def _list_slots(self, number, reach):
         if number == 0:
             return 0
-        count = fill_slots(self._table, self._touch(), self._first, number, reach)
+        count = fill_slots(self._table, self._touch(), number, reach)
         if count > len(self._marks):
             self._marks, self._slots = room_for_slots(2 * count)
-            count = fill_slots(self._table, self._touch(), self._first, number, reach)
+            count = fill_slots(self._table, self._touch(), number, reach)
         recall(self._marks, self._slots, count, self._key, self._element, self._stretch)
         return count
 
@@ -165,20 +173,21 @@ def _depth(case, bodies):
     return case.contacts.law.depth or (float(bodies.half[:, used].min()) if len(bodies) else 1.0)
 
 
-def _table(bodies, cell, case, gate):
-    """The kernels' copy of the bodies, with the gate as the last row; walls and gate are of one material."""
+def _of_material(walls, material):
+    return np.column_stack([walls, np.full(len(walls), float(material))])
+
+
+def _table(bodies, cell, driven, material):
+    """The kernels' copy of the bodies, then of what is `driven`, upright boxes of one material."""
     count = len(bodies)
-    out = np.zeros((count + 1, table.WIDTH))
+    out = np.zeros((count + len(driven), table.WIDTH))
     for at, values in ((table.HALF, bodies.half), (table.INERTIA, bodies.inertia), (table.CELL, cell)):
         out[:count, at : at + 3] = values
     out[:count, table.MATERIAL], out[:count, table.RADIUS] = bodies.material, bodies.radius
-    out[count, table.MATERIAL] = list(case.materials).index(case.wall_material) if case.materials else 0
-    far = _FAR * max(high - low for low, high in zip(case.box.min, case.box.max, strict=True))
-    out[count, table.HALF : table.HALF + 3] = far
-    out[count, table.CELL : table.CELL + 3] = np.max(cell, initial=0.0)
-    out[count, table.QUATERNION] = 1.0
-    out[count, [table.TURN, table.TURN + 4, table.TURN + 8]] = 1.0
-    if gate is not None:
-        out[count, table.HALF] = 0.5 * (gate.max_x - gate.min_x)
-        out[count, table.POSITION] = 0.5 * (gate.max_x + gate.min_x)
+    out[:count, table.SHAPE] = bodies.shape
+    for row, plate in enumerate(driven, count):
+        out[row, table.ROLE], out[row, table.MATERIAL] = table.DRIVEN, material
+        out[row, table.HALF : table.HALF + 3] = plate.half
+        out[row, table.CELL : table.CELL + 3] = np.max(cell, initial=0.0)
+        out[row, [table.QUATERNION, table.TURN, table.TURN + 4, table.TURN + 8]] = 1.0
     return out

@@ -6,7 +6,7 @@ from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
 from parsim.solid.laws.foundation import TANGENTIAL, friction_force, normal_force
 from parsim.solid.motion import clear_loads, speed_of
-from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, A, B
+from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
 from parsim.solid.tanks import load_pair
@@ -38,9 +38,10 @@ def press(m, touch, number, lapse):
 
 
 @kernel
-def coefficients(m, law, a, b):
-    """(stiffness per area, damping ratio, friction) of body a and b; walls are of the gate's material."""
-    one, two = int(m[a, MATERIAL]), int(m[b if b >= 0 else len(m) - 1, MATERIAL])
+def coefficients(m, touch, a, b):
+    """(stiffness per area, damping ratio, friction) of bodies a and b, or of body a and wall -1 - b."""
+    law, walls = touch.law, touch.walls
+    one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
     return law[0, one, two], law[1, one, two], law[2, one, two]
 
 
@@ -66,9 +67,9 @@ def _push(m, touch, c, n, total, lapse):
     The dashpots share 2 b sqrt(m* k A) by area, m* taken at the centre of the touching area: restitution then depends
     neither on the number of elements nor on where the body is hit.
     """
-    law, pairs, shift, slots = touch.law, touch.pairs, touch.shift, touch.slots
+    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    stiffness, damping, mu = coefficients(m, law, a, b)
+    stiffness, damping, mu = coefficients(m, touch, a, b)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total)
     motion = relative_motion(m, a, b, by)
@@ -114,7 +115,7 @@ def _sum(touch, first, last, n, motion, lapse, law):
 
 @kernel
 def relative_motion(m, a, b, by):
-    """Motion of body a against b (a body, the gate or a wall): (centre of a, velocity there, spin), each of three."""
+    """Motion of body a against b (a body or a wall): (centre of a, velocity there, spin), each of three."""
     v, w = three(m, a, VELOCITY), three(m, a, SPIN)
     if b < 0:
         return three(m, a, POSITION), v, w

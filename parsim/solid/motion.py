@@ -10,6 +10,7 @@ from parsim.geometry.rotation import free_turn, matrix, scaled
 from parsim.machine.jit import kernel
 from parsim.solid.table import (
     ALONE,
+    DRIVEN,
     GIVEN,
     HELD,
     INERTIA,
@@ -62,7 +63,7 @@ def begin(m, pose, mass, held, water, gravity, planar, weight):
         w = three(m, b, SPIN)
         h = scaled(t, three(m, b, INERTIA), w[0], w[1], w[2])
         m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
-    for b in range(mass.size + 1):
+    for b in range(len(m)):
         for k in range(6):
             m[b, TOTAL + k] = m[b, MEAN + k] = 0.0
 
@@ -129,7 +130,7 @@ def clear_loads(m):
 @kernel
 def alone(m, dt):
     """Take the bodies that touch nothing over the whole step `dt`, s, at once. 0.5 us each."""
-    for b in range(len(m) - 1):
+    for b in range(len(m)):
         if m[b, ROLE] == ALONE:
             drift(m, b, 0.5 * dt)
             kick(m, b, dt)
@@ -138,23 +139,20 @@ def alone(m, dt):
 
 @kernel
 def drift_involved(m, dt):
-    """Move the gate and all bodies that may touch something over `dt`, s."""
-    gate = len(m) - 1
-    for a in range(3):
-        m[gate, POSITION + a] += dt * m[gate, VELOCITY + a]
-    for b in range(gate):
-        if m[b, ROLE] == INVOLVED:
+    """Move what is driven and all bodies that may touch something over `dt`, s."""
+    for b in range(len(m)):
+        if m[b, ROLE] == INVOLVED or m[b, ROLE] == DRIVEN:
             drift(m, b, dt)
 
 
 @kernel
 def foresee(m, dt):
-    """Set the MEAN of these bodies and the gate for a kick over `dt`, s, by the present loads."""
-    gate = len(m) - 1
-    for a in range(3):
-        m[gate, MEAN + a] = m[gate, VELOCITY + a]
-    for b in range(gate):
-        if m[b, ROLE] == INVOLVED:
+    """Set the MEAN of these bodies and of what is driven for a kick over `dt`, s, by the present loads."""
+    for b in range(len(m)):
+        if m[b, ROLE] == DRIVEN:
+            for a in range(3):
+                m[b, MEAN + a], m[b, MEAN + 3 + a] = m[b, VELOCITY + a], m[b, SPIN + a]
+        elif m[b, ROLE] == INVOLVED:
             t, u = three(m, b, GIVEN + 3), three(m, b, LOAD + 3)
             turn = scaled(turn_at(m, b), three(m, b, INVERSE), t[0] + u[0], t[1] + u[1], t[2] + u[2])
             for a in range(3):
@@ -165,15 +163,16 @@ def foresee(m, dt):
 
 @kernel
 def kick_involved(m, dt):
-    """Kick these bodies, their MEAN known; returns (energy dissipated, work done by the gate on bodies), J."""
-    gate, lost, work = len(m) - 1, 0.0, 0.0
+    """Kick these bodies, their MEAN known; returns (energy dissipated, work on them of what is driven), J."""
+    lost, work = 0.0, 0.0
     for b in range(len(m)):
         for k in range(6):
             lost -= dt * m[b, LOSS + k] * m[b, MEAN + k]
         if m[b, ROLE] == INVOLVED:
             kick(m, b, dt)
-    for a in range(3):
-        work -= dt * m[gate, LOAD + a] * m[gate, VELOCITY + a]
+        elif m[b, ROLE] == DRIVEN:
+            for k in range(6):
+                work -= dt * m[b, LOAD + k] * m[b, MEAN + k]
     return lost, work
 
 
@@ -185,9 +184,7 @@ def length(v):
 
 @kernel
 def speed_of(m, b, dt):
-    """Bound of the speed of any point of body `b` (or the gate) within `dt`, s, without contacts, m/s."""
-    if b == len(m) - 1:
-        return length(three(m, b, VELOCITY))
+    """Bound of the speed of any point of body `b` within `dt`, s, without contacts, m/s."""
     inverse = three(m, b, INVERSE)
     faster = dt * length(three(m, b, GIVEN + 3)) * max(inverse[0], inverse[1], inverse[2])
     spin = length(three(m, b, SPIN)) + faster
@@ -196,9 +193,9 @@ def speed_of(m, b, dt):
 
 @kernel
 def bound_of_speed(m, dt):
-    """Largest speed, m/s, that a point of any body or the gate can have within `dt`, s, before anything is hit."""
+    """Largest speed, m/s, that a point of anything can have within `dt`, s, before anything is hit."""
     largest = 0.0
     for b in range(len(m)):
-        if m[b, ROLE] != HELD or b == len(m) - 1:
+        if m[b, ROLE] != HELD:
             largest = max(largest, speed_of(m, b, dt))
     return largest

@@ -1,14 +1,14 @@
 """Which bodies may touch what within one step, and with which contact elements.
 
-Pairs, whole numbers by columns: A, B (a body, the number of bodies for the gate, -1 - w for wall w), FEATURE (the
-direction of the normal), FIRST to MIDDLE (slots of the elements of a), MIDDLE to LAST (those of b), LAST itself (the
-crossing of two edges), KEY (a, then b; pairs are in its order). Beside them `shift` (n, 3), m, from b to its periodic
-image next to a.
+Pairs, whole numbers by columns: A, B (rows of the table of bodies; -1 - w for wall w), FEATURE (the direction of the
+normal), FIRST to MIDDLE (slots of the elements of a), MIDDLE to LAST (those of b), LAST itself (the crossing of two
+edges, or where something round touches), KEY (a, then b; pairs are in its order). Beside them `shift` (n, 3), m, from b
+to its periodic image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
-INDEX (its row in the table of elements, -1: crossing of edges), TOUCHING; `slots`: DEPTH, m, AREA, m2, POINT, m,
-STRETCH, m, of its friction spring. Walls, rows of ten: normal inwards, level (normal . x > level inside), and the
-lowest and highest corner of where they are.
+INDEX (its row in the table of elements, -1: none), TOUCHING; `slots`: DEPTH, m, AREA, m2, POINT, m,
+STRETCH, m, of its friction spring. Walls, rows of eleven: normal inwards, level (normal . x > level inside), the
+lowest and highest corner of where they are, and WALL_MATERIAL.
 """
 
 import math
@@ -19,19 +19,22 @@ import numpy as np
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.motion import bound_of_speed
-from parsim.solid.separation import best_feature, between, ramp_of, reach_along
-from parsim.solid.table import ALONE, HALF, HELD, INVOLVED, POSITION, ROLE, TURN, pose_of
+from parsim.solid.separation import ROUND_A, best_feature, between, ramp_of, reach_along
+from parsim.solid.shapes.kernels import touches_at_one_point
+from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, pose_of, shape_of
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
 DEPTH, AREA, POINT, STRETCH = 0, 1, 2, 5
+WALL_MATERIAL = 10
 _ROUNDING = 1e-9  # of the widest body
 _MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
 class Touch(NamedTuple):
-    """What may touch, and with what: the tables above; elements: see `shapes.box`; law: see `forces.press`; tanks."""
+    """What may touch, and with what: the tables above; first, elements: see `shapes.box`; law: see `forces.press`."""
 
+    first: np.ndarray
     elements: np.ndarray
     walls: np.ndarray
     law: np.ndarray
@@ -62,15 +65,15 @@ def room_for_slots(count):
 
 
 @kernel
-def near_pairs(m, touch, period, planar, gate, dt, place, order):
+def near_pairs(m, touch, period, planar, dt, place, order):
     """Find the pairs that may touch within `dt`, s, and mark their bodies as involved; (number, reach in m).
 
-    `period` (3,), m, inf where nothing repeats; `gate`: whether there is one; `place` (nb,): x within the period, and
-    the `order` that sorts it. A number beyond the room for pairs says how much is needed. Sweep along x, then upright
-    boxes, then separating axes. 9 blocks apart: 5 us.
+    `period` (3,), m, inf where nothing repeats; `place` (nb,): x within the period of the bodies, which are the first
+    rows of the table, and the `order` that sorts it. A number beyond the room for pairs says how much is needed. Sweep
+    along x, then upright boxes, then separating axes. 9 blocks apart: 5 us.
     """
     walls = touch.walls
-    count, number = len(m) - 1, 0
+    count, number = place.size, 0
     extent, widest = _extents(m, count)
     reach = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
     near = Reach(period, extent, reach, planar)
@@ -87,11 +90,12 @@ def near_pairs(m, touch, period, planar, gate, dt, place, order):
             a, b = min(order[row], order[other]), max(order[row], order[other])
             number = _add(m, touch, number, a, b, near)
     for a in range(count):
-        if gate and m[a, ROLE] != HELD:
-            number = _add(m, touch, number, a, count, near)
+        for driven in range(count, len(m)):
+            number = _add(m, touch, number, a, driven, near)
         for w in range(len(walls)):
-            if m[a, ROLE] != HELD and above(m, walls, a, w) < reach:
-                number = _note(m, touch, number, a, -1 - w, 0, (0.0, 0.0, 0.0))
+            if m[a, ROLE] > DRIVEN and above(m, walls, a, w) < reach:
+                feature = ROUND_A if touches_at_one_point(shape_of(m, a)) else 0
+                number = _note(m, touch, number, a, -1 - w, feature, (0.0, 0.0, 0.0))
     return number, reach
 
 
@@ -105,9 +109,9 @@ def above(m, walls, a, w):
 
 @kernel
 def _extents(m, count):
-    """(half extents (count + 1, 3) of the upright boxes around all bodies and the gate, the largest along x)."""
-    extent, widest = np.zeros((count + 1, 3)), 0.0
-    for b in range(count + 1):
+    """(half extents (rows, 3) of the upright boxes around all rows, the largest along x of the first `count`)."""
+    extent, widest = np.zeros((len(m), 3)), 0.0
+    for b in range(len(m)):
         for a in range(3):
             for k in range(3):
                 extent[b, a] += m[b, HALF + k] * abs(m[b, TURN + 3 * a + k])
@@ -120,12 +124,12 @@ def _extents(m, count):
 def _add(m, touch, number, a, b, near):
     """Note the pair of bodies if its boxes are within reach of each other; the new number of pairs."""
     period, extent, reach, planar = near
-    if m[a, ROLE] == HELD and (m[b, ROLE] == HELD or b == len(m) - 1):
+    if m[a, ROLE] <= DRIVEN and m[b, ROLE] <= DRIVEN:
         return number
     moved = np.zeros(3)
     for k in range(3):
         apart = m[a, POSITION + k] - m[b, POSITION + k]
-        if period[k] < math.inf and b < len(m) - 1:
+        if extent[b, k] < 0.5 * period[k] < math.inf:  # what is wider has no image beside itself
             moved[k] = period[k] * np.round(apart / period[k])
         if abs(apart - moved[k]) > extent[a, k] + extent[b, k] + reach:
             return number
@@ -155,20 +159,22 @@ def sort_pairs(pairs, shift, number):
 
 
 @kernel
-def fill_slots(m, touch, first, number, reach):
+def fill_slots(m, touch, number, reach):
     """List the elements of every pair that are within `reach`, m, of what they may touch; how many there are.
 
     Beyond the room in `slots` they are counted only. 10 ns an element of the bodies in a pair.
     """
-    pairs, slot = touch.pairs, 0
+    first, pairs, slot = touch.first, touch.pairs, 0
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
-        own = first[a + 1] - first[a]
+        own, spot = first[a + 1] - first[a], pairs[c, FEATURE] >= ROUND_A
         pairs[c, FIRST] = slot
-        slot = _list(m, touch, first, c, (a, b, 0), reach, slot)
+        if not spot:
+            slot = _list(m, touch, c, (a, b, 0), reach, slot)
         pairs[c, MIDDLE] = slot
-        if 0 <= b < len(m) - 1:
-            slot = _list(m, touch, first, c, (b, a, own), reach, slot)
+        if b >= 0:
+            if not spot:
+                slot = _list(m, touch, c, (b, a, own), reach, slot)
             own += first[b + 1] - first[b]
         pairs[c, LAST] = slot
         slot = _mark(touch, slot, pairs[c, KEY], own, -1)
@@ -186,9 +192,9 @@ def _mark(touch, slot, key, element, index):
 
 
 @kernel
-def _list(m, touch, first, c, which, reach, slot):
-    """Note the elements of a body within reach of another (a body, the gate or a wall) from a number on: `which`."""
-    elements, walls, pairs, shift = touch.elements, touch.walls, touch.pairs, touch.shift
+def _list(m, touch, c, which, reach, slot):
+    """Note the elements of a body within reach of another (a body or a wall) from a number on: `which`."""
+    first, elements, walls, pairs, shift = touch.first, touch.elements, touch.walls, touch.pairs, touch.shift
     body, other, offset = which
     sign = 1.0 if body == pairs[c, A] else -1.0
     _, t = pose_of(m, body, (0.0, 0.0, 0.0))

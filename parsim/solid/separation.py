@@ -1,4 +1,4 @@
-"""Where two boxes touch: the common normal by separating axes, and the depth of a point along it.
+"""Where two bodies touch: for boxes the common normal by separating axes, and the depth of a point along it.
 
 One normal for all elements of a pair keeps elements near an edge from choosing the wrong face. It is one of 15
 directions (Gottschalk, Lin & Manocha 1996, OBBTree): the face normals of both boxes and the cross products of their
@@ -7,9 +7,12 @@ edges; the one along which they are farthest apart, or overlap least. `m`: table
 
 import math
 
+from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
-from parsim.solid.table import CELL, HALF, POSITION, TURN, three
+from parsim.solid.shapes.kernels import distance, reach, touches_at_one_point
+from parsim.solid.table import CELL, HALF, POSITION, TURN, shape_of, three, turn_at
 
+ROUND_A, ROUND_B = 15, 16  # features: a, or b, is round and touches the nearest point of the other
 _LATERAL = 0.1  # cosine below which a face lies along the normal and does not bound the depth
 _EDGE_BIAS = 0.05  # an edge-edge normal must be better than a face normal by this share
 _PARALLEL = 0.05  # sine of the angle below which edges are parallel: their normal would turn 20 times as fast as they
@@ -24,10 +27,7 @@ def axis(m, b, i):
 @kernel
 def reach_along(m, b, x, y, z):
     """Half extent of body `b` along the unit vector (x, y, z)."""
-    reach = 0.0
-    for i in range(3):
-        reach += m[b, HALF + i] * abs(m[b, TURN + i] * x + m[b, TURN + 3 + i] * y + m[b, TURN + 6 + i] * z)
-    return reach
+    return reach(shape_of(m, b), to_body(turn_at(m, b), x, y, z), three(m, b, HALF))
 
 
 @kernel
@@ -62,6 +62,11 @@ def separation(m, a, b, shift, feature):
 
     Edges that have turned parallel since they were chosen, within a step, no longer cross: infinitely far apart.
     """
+    if feature == ROUND_A:
+        return gap_to_round(m, a, b, shift)
+    if feature == ROUND_B:
+        apart, x, y, z = gap_to_round(m, b, a, (-shift[0], -shift[1], -shift[2]))
+        return apart, -x, -y, -z
     x, y, z = direction(m, a, b, feature)
     if x == 0.0 and y == 0.0 and z == 0.0:
         return math.inf, x, y, z
@@ -73,11 +78,25 @@ def separation(m, a, b, shift, feature):
 
 
 @kernel
+def gap_to_round(m, a, b, shift):
+    """(distance of the round body a from the surface of b moved by `shift`, unit normal from b to a)."""
+    x, y, z = between(m, a, b, shift)
+    t = turn_at(m, b)
+    high, n = distance(shape_of(m, b), to_body(t, x, y, z), three(m, b, HALF), (True, True, True))
+    x, y, z = to_global(t, n[0], n[1], n[2])
+    return high - m[a, HALF], x, y, z
+
+
+@kernel
 def best_feature(m, a, b, shift, planar):
     """(feature, distance) of the direction along which the boxes are farthest apart. 0.3 us.
 
-    In 2D only the axes in the plane. Edge pairs must win clearly, as they tie with faces where boxes lie flat.
+    In 2D only the axes in the plane. Edge pairs must win clearly, as they tie with faces where boxes lie flat. Where
+    one is round, the direction is that to the nearest point of the other.
     """
+    for body, feature in ((a, ROUND_A), (b, ROUND_B)):
+        if touches_at_one_point(shape_of(m, body)):
+            return feature, separation(m, a, b, shift, feature)[0]
     best, farthest = 0, -math.inf
     for feature in range(6):
         if planar and feature % 3 == 1:

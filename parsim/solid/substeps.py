@@ -9,8 +9,8 @@ from parsim.machine.jit import kernel
 from parsim.solid.forces import coefficients, compliance, free_time, press, relative_motion, velocity_at
 from parsim.solid.laws.foundation import TANGENTIAL
 from parsim.solid.motion import alone, drift_involved, kick_involved
-from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, A, B
-from parsim.solid.separation import overlap_share, ramp_of
+from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, STRETCH, A, B
+from parsim.solid.separation import ROUND_A, overlap_share, ramp_of
 from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at
 from parsim.solid.tanks import STORED, restrain
 from parsim.solid.touch import centre_of, measure, normal_of, show
@@ -21,7 +21,7 @@ _CALM = 0.25  # how far, over their depth, such contacts may still move
 
 @kernel
 def advance(m, touch, number, dt, reach, steps_per_contact, state):
-    """Move all bodies over `dt`, s; (touching elements, steps, energy dissipated, work of the gate).
+    """Move all bodies over `dt`, s; (touching elements, steps, energy dissipated, work of what is driven).
 
     Sub-steps of equal length while something touches; until the first touch, as long as nothing can touch. `state`
     (2,): energy in friction springs and the time by which their stretch is behind the pose; from step to step.
@@ -46,8 +46,8 @@ def advance(m, touch, number, dt, reach, steps_per_contact, state):
         lapse = state[1] + 0.5 * span
         touching = press(m, touch, number, lapse)
         state[0] = restrain(m, touch, number, span)
-        heat, by_gate = kick_involved(m, span)
-        lost, work, steps = lost + heat, work + by_gate, steps + 1
+        heat, by_driven = kick_involved(m, span)
+        lost, work, steps = lost + heat, work + by_driven, steps + 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
         state[1] = pending
     drift_involved(m, pending)
@@ -70,7 +70,7 @@ def _longest(m, touch, number, steps_per_contact, reach):
         area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
         calm = _calm(m, touch, c, (x, y, z), area) if area > 0.0 else False
         rigid = _rate(m, touch, c, (x, y, z))
-        if b >= 0 and apart < 0.0:
+        if b >= 0 and apart < 0.0 and pairs[c, FEATURE] < ROUND_A:
             ramp = 4.0 * ramp_of(m, a, b)
             rigid *= min(overlap_share(m, a, b, three(shift, c, 0), x, y, z, ramp) + reach / ramp, 1.0)
         steps = min(steps_per_contact, _AT_REST) if calm else steps_per_contact
@@ -88,7 +88,7 @@ def _longest(m, touch, number, steps_per_contact, reach):
 @kernel
 def _rate(m, touch, c, n):
     """Square of the largest angular frequency, 1/s2, of pair `c` if all its elements touch."""
-    law, pairs, shift, slots = touch.law, touch.pairs, touch.shift, touch.slots
+    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     total, trace = show(m, touch, c, n), 0.0
     if total == 0.0:
@@ -97,13 +97,13 @@ def _rate(m, touch, c, n):
         if slots[slot, AREA] > 0.0:
             trace += slots[slot, AREA] * compliance(m, a, b, three(slots, slot, POINT), by, n)
     bounce = total * compliance(m, a, b, centre_of(slots, first, last), by, n)
-    return coefficients(m, law, a, b)[0] * max(bounce, trace / 3.0)  # three ways to move on a face
+    return coefficients(m, touch, a, b)[0] * max(bounce, trace / 3.0)  # three ways to move on a face
 
 
 @kernel
 def _calm(m, touch, c, n, area):
     """Whether a touching pair lies at rest: what speed and unbalanced force can move it is small against its depth."""
-    law, pairs, shift, slots = touch.law, touch.pairs, touch.shift, touch.slots
+    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     motion, volume, fastest = relative_motion(m, a, b, by), 0.0, 0.0
     x, y, z = motion[0]
@@ -114,7 +114,7 @@ def _calm(m, touch, c, n, area):
             fastest = max(fastest, abs(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
             volume += slots[slot, AREA] * slots[slot, DEPTH]
     centre = centre_of(slots, first, last)
-    square = coefficients(m, law, a, b)[0] * area * compliance(m, a, b, centre, by, n)
+    square = coefficients(m, touch, a, b)[0] * area * compliance(m, a, b, centre, by, n)
     unbalanced = _acceleration(m, a, centre, (0.0, 0.0, 0.0), n)
     if b >= 0:
         unbalanced -= _acceleration(m, b, centre, by, n)
@@ -135,13 +135,13 @@ def _acceleration(m, b, p, by, n):
 @kernel
 def elastic(m, touch, number):
     """Energy, J, that pairs can give back at the present pose: what their springs hold, at most their tanks."""
-    law, pairs, slots, tanks = touch.law, touch.pairs, touch.slots, touch.tanks
+    pairs, slots, tanks = touch.pairs, touch.slots, touch.tanks
     energy = 0.0
     for c in range(number):
         apart, x, y, z = normal_of(m, touch, c)
         if apart >= 0.0 or measure(m, touch, c, (x, y, z)) == 0.0:
             continue
-        stiffness, potential = coefficients(m, law, pairs[c, A], pairs[c, B])[0], 0.0
+        stiffness, potential = coefficients(m, touch, pairs[c, A], pairs[c, B])[0], 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)

@@ -1,4 +1,4 @@
-"""The kernels' working copy of the bodies: one array, a row per body and a last one for the gate.
+"""The kernels' working copy of all that moves: one array, a row per body, then those of what is driven (the gate).
 
 One array instead of many: a kernel then passes a table of bodies on to the next at no cost. Columns by name:
 """
@@ -9,14 +9,15 @@ POSITION, QUATERNION, VELOCITY = 0, 3, 7
 MOMENTUM, SPIN = 10, 13  # angular, both in global axes
 TURN = 16  # rotation matrix by rows, 9
 GIVEN, LOAD, LOSS, TOTAL = 25, 31, 37, 43  # force and torque: constant; of contacts; their lossy part; their impulse
-HALF, CELL = 49, 52  # half edges; distances of contact elements
+HALF, CELL = 49, 52  # half edges of the box around it; distances of contact elements
 INERTIA, INVERSE, LIGHT = 55, 58, 61  # principal moments; 1 / moments; 1 / mass; the inverses 0 for what is held
 ROLE, MATERIAL = 62, 63
 MEAN = 64  # of velocity and spin before and after a kick
 RADIUS = 70  # of the ball around it, in a plane of the disc
-WIDTH = 71
+SHAPE = 71  # number of its shape
+WIDTH = 72
 
-HELD, ALONE, INVOLVED = 0, 1, 2  # roles: does not move; touches nothing in this step; may touch
+HELD, DRIVEN, ALONE, INVOLVED = 0, 1, 2, 3  # roles: at rest; moves as given; free, touches nothing now; may touch
 
 
 @kernel
@@ -38,6 +39,12 @@ def turn_at(m, b):
     return (
         m[b, t], m[b, t + 1], m[b, t + 2], m[b, t + 3], m[b, t + 4], m[b, t + 5], m[b, t + 6], m[b, t + 7], m[b, t + 8],
     )  # fmt: skip
+
+
+@kernel
+def shape_of(m, b):
+    """Number of the shape of body `b`."""
+    return int(m[b, SHAPE])
 
 
 @kernel

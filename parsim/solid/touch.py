@@ -1,12 +1,16 @@
 """Geometry of the pairs that may touch: depth, area and place of each of their elements."""
 
+import math
+
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, INDEX, LAST, MIDDLE, POINT, A, B, above
-from parsim.solid.separation import depth_in_box, edge_crossing, overlap_share, ramp_of, separation
-from parsim.solid.table import HALF, pose_of, three
+from parsim.solid.separation import ROUND_A, ROUND_B, depth_in_box, edge_crossing, overlap_share, ramp_of, separation
+from parsim.solid.shapes.kernels import touches_at_one_point
+from parsim.solid.table import HALF, POSITION, pose_of, shape_of, three
 
 _NOWHERE = (0.0, 0.0, 0.0)
+_DEEPEST = 0.1  # of its radius, that something round is expected to be pressed in; its stiffness grows with the depth
 
 
 @kernel
@@ -24,25 +28,51 @@ def normal_of(m, touch, c):
 def measure(m, touch, c, n):
     """Depth, area and place of all elements of pair `c` for the normal `n` into `slots`; the area that touches, m2.
 
-    Elements of either body count half, or the area would count twice; against walls and the gate they count whole.
+    Elements of either body count half, or the area would count twice; against what has none they count whole.
     """
     walls, pairs, shift = touch.walls, touch.pairs, touch.shift
     a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
+    if pairs[c, FEATURE] >= ROUND_A:
+        depth = max(-normal_of(m, touch, c)[0], 0.0)
+        _spot(m, touch, c, n, depth, 0.0)
+        return touch.slots[last, AREA]
     here, opposite = pose_of(m, a, _NOWHERE), (-n[0], -n[1], -n[2])
     if b < 0:
         return _against_plane(touch, first, last, here, n, walls[-1 - b, 3])
     there, ramp = pose_of(m, b, by), ramp_of(m, a, b)
-    share = overlap_share(m, a, b, by, n[0], n[1], n[2], 4.0 * ramp) * whole(m, b)
+    share = overlap_share(m, a, b, by, n[0], n[1], n[2], 4.0 * ramp) * whole(touch, b)
     total = _in_box(touch, first, middle, here, there, three(m, b, HALF), n, (ramp, share))
     total += _in_box(touch, middle, last, there, here, three(m, a, HALF), opposite, (ramp, share))
     return total + _cross(m, touch, by, c, n, share)
 
 
 @kernel
-def whole(m, b):
-    """Weight of the elements of a pair: a half each where both bodies have some."""
-    return 0.5 if 0 <= b < len(m) - 1 else 1.0
+def _spot(m, touch, c, n, depth, deep):
+    """Where something round touches, into the last slot of pair `c`: one element `depth` deep.
+
+    Its area is that with which the law is true to the round form: over the circle that a sphere of radius R shares with
+    a plane in it to the depth d, depths sum up to pi R d^2, so it is pi R d, taken at `deep` radii unless 0.
+    """
+    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
+    a, b = pairs[c, A], pairs[c, B]
+    body, by, sign = a, _NOWHERE, -1.0
+    radius = m[a, HALF]
+    if pairs[c, FEATURE] == ROUND_B:
+        body, by, sign, radius = b, three(shift, c, 0), 1.0, m[b, HALF]
+    elif b >= 0 and touches_at_one_point(shape_of(m, b)):
+        radius = m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF])
+    x, y, z = three(m, body, POSITION)
+    arm = sign * (m[body, HALF] - 0.5 * depth)
+    x, y, z = x + by[0] + arm * n[0], y + by[1] + arm * n[1], z + by[2] + arm * n[2]
+    area = math.pi * radius * (depth if deep == 0.0 else deep * radius)
+    _set(slots, pairs[c, LAST], depth, area, x, y, z)
+
+
+@kernel
+def whole(touch, b):
+    """Weight of the elements of a pair with b: a half each where both have some."""
+    return 0.5 if b >= 0 and touch.first[b + 1] > touch.first[b] else 1.0
 
 
 @kernel
@@ -117,12 +147,16 @@ def show(m, touch, c, n):
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, far = pairs[c, A], pairs[c, B], three(shift, c, 0), 1e9
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
+    if pairs[c, FEATURE] >= ROUND_A:
+        _spot(m, touch, c, n, 0.0, 2.0 * _DEEPEST)
+        slots[last, DEPTH] = 1.0
+        return slots[last, AREA]
     _against_plane(touch, first, middle, pose_of(m, a, _NOWHERE), n, far)
     if b >= 0:
         opposite = (-n[0], -n[1], -n[2])
         _against_plane(touch, middle, last, pose_of(m, b, by), opposite, far)
         _cross(m, touch, by, c, n, 1.0)
-    share, total = whole(m, b), 0.0
+    share, total = whole(touch, b), 0.0
     for slot in range(first, last + 1):
         slots[slot, DEPTH] = 1.0
         slots[slot, AREA] *= share

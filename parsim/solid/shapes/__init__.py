@@ -1,6 +1,26 @@
-"""Shapes of bodies: what exists is listed here."""
+"""Shapes of bodies: what exists is listed here, in the order of their numbers."""
+
+import functools
+
+import numpy as np
 
 from parsim.case.types import choice
 from parsim.solid.shapes.box import BoxShape
+from parsim.solid.shapes.sphere import SphereShape
 
-Shape = choice(BoxShape)
+SHAPES = (BoxShape, SphereShape)
+Shape = choice(*SHAPES)
+
+
+def elements_of(bodies, spacing=None):
+    """Contact elements, the points that feel what a body touches, each with its share of area, on all bodies.
+
+    Returns first (nb + 1,): the elements of body b are rows first[b] to first[b + 1]; elements (n, 6): point, m, body
+    frame, and its share of the face along each body axis, m2, signed as the face looks: the area seen along a
+    direction d is the sum of max(0, area d) over the axes; cell (nb, 3), m, the distances between elements.
+    """
+    made = functools.cache(lambda shape: shape.elements(bodies.planar, spacing))
+    parts = [made(shape) for shape in bodies.shapes]
+    first = np.cumsum([0, *(len(part) for part, _ in parts)])
+    elements = np.concatenate([np.zeros((0, 6)), *(part for part, _ in parts)])
+    return first, elements, np.array([cell for _, cell in parts], float).reshape(-1, 3)

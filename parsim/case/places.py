@@ -1,29 +1,29 @@
-"""Exact tests on turned boxes: corners, reach, overlap. Angles in degrees, lengths in m."""
+"""Exact tests on turned boxes and balls: reach, distance, overlap. Angles in degrees, lengths in m."""
 
-from dataclasses import dataclass
-from itertools import product
+from dataclasses import dataclass, replace
 
 import numpy as np
+
+from parsim.solid.shapes.box import distance
 
 
 @dataclass(frozen=True)
 class TurnedBox:
-    """A box: centre (3,), half edge lengths (3,), axes (3, 3) whose columns are its edge directions."""
+    """A box, or the ball in it: centre (3,), half edges (3,), axes (3, 3) whose columns are its edge directions."""
 
     centre: np.ndarray
     half: np.ndarray
     axes: np.ndarray
-
-    @property
-    def corners(self):
-        """The eight corners, (8, 3), m."""
-        signs = np.array(list(product((-1.0, 1.0), repeat=3)))
-        return self.centre + (signs * self.half) @ self.axes.T
+    round: bool = False
 
     @property
     def reach(self):
         """Half extents along x, y and z, (3,), m."""
-        return np.abs(self.axes) @ self.half
+        return self.half if self.round else np.abs(self.axes) @ self.half
+
+    def grown(self, by):
+        """The same with its surface moved outwards by `by`, m."""
+        return replace(self, half=self.half + by)
 
 
 def rotation(angles):
@@ -36,12 +36,14 @@ def rotation(angles):
 
 
 def of_body(body):
-    """The box of a body of a case."""
-    return TurnedBox(np.array(body.position), np.array(body.shape.size) / 2, rotation(body.angles))
+    """The place that a body of a case takes."""
+    return TurnedBox(np.array(body.position), np.array(body.shape.half), rotation(body.angles), body.shape.ROUND)
 
 
 def clearance(box, points):
-    """Distance (n,) of points (n, 3) from a box, m; 0 inside."""
+    """Distance (n,) of points (n, 3) from a box or ball, m; 0 inside."""
+    if box.round:
+        return np.maximum(np.linalg.norm(points - box.centre, axis=1) - box.half[0], 0.0)
     over = np.maximum(np.abs((points - box.centre) @ box.axes) - box.half, 0.0)
     return np.sqrt((over**2).sum(axis=1))
 
@@ -58,6 +60,12 @@ def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     Separating axes (Gottschalk, Lin & Manocha 1996): three of each box and their nine cross products.
     """
     between = second.centre + np.asarray(shift) - first.centre
+    if first.round or second.round:
+        ball, other, way = (first, second, -between) if first.round else (second, first, between)
+        if other.round:
+            return float(first.half[0] + second.half[0] - np.linalg.norm(between))
+        high, _ = distance(other.axes.T @ way, other.half, (True, True, True))
+        return float(ball.half[0] - high)
     crosses = np.cross(first.axes.T[:, None, :], second.axes.T[None, :, :]).reshape(9, 3)
     lengths = np.linalg.norm(crosses, axis=1)
     directions = np.vstack([first.axes.T, second.axes.T, crosses[lengths > 1e-9] / lengths[lengths > 1e-9, None]])

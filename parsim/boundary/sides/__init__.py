@@ -1,0 +1,9 @@
+"""Sides of the box: what exists is listed here."""
+
+from parsim.boundary.sides.open import OpenSide
+from parsim.boundary.sides.periodic import PeriodicSide
+from parsim.boundary.sides.wall import WallSide
+from parsim.case.types import choice
+
+Side = choice(WallSide, OpenSide, PeriodicSide)
+WALL, OPEN = WallSide(), OpenSide()

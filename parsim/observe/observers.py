@@ -1,0 +1,24 @@
+"""What is measured of a run while it runs: what exists is listed here, in the order of its tables."""
+
+from parsim.observe.bodies import Bodies
+from parsim.observe.counts import Counts
+from parsim.observe.energy import Energy
+from parsim.observe.front import Front
+from parsim.observe.gauges import Gauges
+from parsim.observe.loads import Loads
+from parsim.observe.lost import Lost
+from parsim.observe.observer import table
+
+OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front)  # what is seen at a time; what has left is told at once
+# unit of every column of every series, by names
+TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
+
+
+def rows_now(case, simulation):
+    """What every observer says of a simulation as it is: {name: {column: list of values}}."""
+    found = {}
+    for observer in OBSERVERS:
+        rows = observer(case).rows(simulation)
+        names = [column.name for column in observer.columns]
+        found[observer.name] = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True)) if rows else {}
+    return found
