@@ -10,7 +10,7 @@ from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHI
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
 from parsim.solid.tanks import load_pair
-from parsim.solid.touch import centre_of, measure, normal_of
+from parsim.solid.touch import centre_of, held_share, measure, normal_of
 
 _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -65,15 +65,18 @@ def _push(m, touch, c, n, total, lapse):
     """Add the loads of one pair whose elements touch with the area `total`; how many there are.
 
     The dashpots share 2 b sqrt(m* k A) by area, m* taken at the centre of the touching area: restitution then depends
-    neither on the number of elements nor on where the body is hit.
+    neither on the number of elements nor on where the body is hit. A force that goes with the depth to the power p
+    holds 1 / (p + 1) of force times depth and is damped like a linear one where m* counts (p + 1) / 2 times: with
+    y = x^((p + 1) / 2) its equation of motion v(x) becomes that of a linear spring (for p = 3/2 that of Tsuji 1992).
     """
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     stiffness, damping, mu = coefficients(m, touch, a, b)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
-    dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total)
+    held = held_share(touch, c)
+    dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total * (0.5 / held))
     motion = relative_motion(m, a, b, by)
-    touching, shear, pressed, force, loss = _sum(touch, first, last, n, motion, lapse, (stiffness, dashpot, mu))
+    touching, shear, pressed, force, loss = _sum(touch, first, last, n, motion, lapse, (stiffness, dashpot, mu, held))
     load_pair(m, touch, c, shear + pressed, shear, force, loss)
     return touching
 
@@ -85,7 +88,7 @@ def _sum(touch, first, last, n, motion, lapse, law):
     Both loads are six numbers: force and torque about the centre of body a.
     """
     marks, slots = touch.marks, touch.slots
-    stiffness, dashpot, mu = law
+    stiffness, dashpot, mu, held = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(TANGENTIAL) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -103,7 +106,7 @@ def _sum(touch, first, last, n, motion, lapse, law):
         slip, s, energy = friction_force(s, n, v, age, mu * normal, TANGENTIAL * stiffness * area, tangential * area)
         slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
         marks[slot, TOUCHING] = 1
-        count, stored, pressed = count + 1, stored + energy, pressed + 0.5 * elastic * depth
+        count, stored, pressed = count + 1, stored + energy, pressed + held * elastic * depth
         p, q, r = normal * n[0] + slip[0], normal * n[1] + slip[1], normal * n[2] + slip[2]
         fx, fy, fz = fx + p, fy + q, fz + r
         tx, ty, tz = tx + (y * r - z * q), ty + (z * p - x * r), tz + (x * q - y * p)

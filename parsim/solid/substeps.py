@@ -13,7 +13,7 @@ from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, STRETC
 from parsim.solid.separation import ROUND_A, overlap_share, ramp_of
 from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at
 from parsim.solid.tanks import STORED, restrain
-from parsim.solid.touch import centre_of, measure, normal_of, show
+from parsim.solid.touch import centre_of, held_share, measure, normal_of, show
 
 _AT_REST = 5  # steps in half a period of what lies or is pressed together
 _CALM = 0.25  # how far, over their depth, such contacts may still move
@@ -145,7 +145,8 @@ def elastic(m, touch, number):
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
-                squares = depth * depth + TANGENTIAL * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-                potential += 0.5 * stiffness * slots[slot, AREA] * squares
+                pressed = held_share(touch, c) * depth * depth
+                sheared = 0.5 * TANGENTIAL * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
+                potential += stiffness * slots[slot, AREA] * (pressed + sheared)
         energy += min(potential, tanks[c, STORED])
     return energy

@@ -70,6 +70,13 @@ def _spot(m, touch, c, n, depth, deep):
 
 
 @kernel
+def held_share(touch, c):
+    """Energy that pair `c` holds over force times depth: a half, where a round body's force goes with the square a
+    third."""
+    return 1.0 / 3.0 if touch.pairs[c, FEATURE] >= ROUND_A else 0.5
+
+
+@kernel
 def whole(touch, b):
     """Weight of the elements of a pair with b: a half each where both have some."""
     return 0.5 if b >= 0 and touch.first[b + 1] > touch.first[b] else 1.0

@@ -1,0 +1,242 @@
+"""Shapes of bodies: volume, distance, rays, samples, surface, draught against plain versions; spheres in contact."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from contact_cases import boxes, budget, case, go, momenta
+from flows import simulation, tank
+
+from parsim.case.model import parse
+from parsim.case.places import TurnedBox, overlap
+from parsim.errors import InputError
+from parsim.geometry.rotation import from_angles, matrices
+from parsim.solid.bodies import Bodies
+from parsim.solid.contacts import Contacts
+from parsim.solid.laws.foundation import foundation
+from parsim.solid.shapes import SHAPES, BoxShape, SphereShape
+from parsim.solid.shapes.kernels import ahead, distance, reach
+
+GIVEN = [BoxShape(size=(0.2, 0.3, 0.5)), BoxShape(size=(0.1, 0.1, 0.1)), SphereShape(diameter=0.3, kind="sphere")]
+ALL = (True, True, True)
+WOOD = {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}}
+
+
+def sphere(diameter):
+    return SphereShape(kind="sphere", diameter=diameter)
+
+
+def directions(count, seed=0):
+    """Unit vectors at random, as tuples."""
+    each = np.random.default_rng(seed).normal(size=(count, 3))
+    return [tuple(row) for row in each / np.linalg.norm(each, axis=1)[:, None]]
+
+
+def test_shapes_stand_in_the_order_of_their_numbers():
+    assert [shape.NUMBER for shape in SHAPES] == list(range(len(SHAPES)))
+
+
+@pytest.mark.parametrize("shape", GIVEN, ids=str)
+def test_distance_is_that_to_the_nearest_point_of_the_surface(shape):
+    """Walking the distance along the normal leads to the surface; nothing of the surface is nearer."""
+    random = np.random.default_rng(1)
+    for p in random.uniform(-1.5, 1.5, (200, 3)) * shape.half:
+        high, n = distance(shape.NUMBER, tuple(p), shape.half, ALL)
+        assert np.linalg.norm(n) == pytest.approx(1.0)
+        foot = p - high * np.array(n)
+        assert distance(shape.NUMBER, tuple(foot), shape.half, ALL)[0] == pytest.approx(0.0, abs=1e-12)
+        inside = distance(shape.NUMBER, tuple(p + (abs(high) - 1e-9) * np.array(directions(1)[0])), shape.half, ALL)
+        assert (inside[0] > 0.0) == (high > 0.0), "within the distance there is no surface"
+
+
+@pytest.mark.parametrize("shape", GIVEN, ids=str)
+def test_rays_meet_the_surface(shape):
+    met = 0
+    for p, n in zip(np.random.default_rng(2).uniform(-2.0, 2.0, (300, 3)) * shape.half, directions(300), strict=True):
+        if distance(shape.NUMBER, tuple(p), shape.half, ALL)[0] <= 0.01:
+            continue
+        gap = ahead(shape.NUMBER, tuple(p), n, shape.half, 0.01)
+        steps = np.linspace(0.0, 3.0, 3001)
+        along = [distance(shape.NUMBER, tuple(p + t * np.array(n)), shape.half, ALL)[0] for t in steps[::10]]
+        if gap < np.inf:
+            met += 1
+            at = p + gap * np.array(n)
+            assert distance(shape.NUMBER, tuple(at), shape.half, ALL)[0] == pytest.approx(0.0, abs=1e-12)
+            assert min((d for d, t in zip(along, steps[::10], strict=True) if t < gap), default=1.0) > -1e-12
+        else:
+            assert min(along) > -1e-3
+    assert met > 20
+    assert ahead(shape.NUMBER, (0.0, 0.0, shape.half[2] - 0.005), (0.0, 0.0, -1.0), shape.half, 0.01) == pytest.approx(
+        -0.005
+    ), "an overlap closes the gap"
+
+
+@pytest.mark.parametrize("shape", GIVEN, ids=str)
+def test_volume_reach_and_inertia_are_those_of_the_surface(shape):
+    points, quads = shape.surface()
+    a, b, c, d = (points[quads[:, k]] for k in range(4))
+    volume = sum((p * np.cross(q, r)).sum() for p, q, r in ((a, b, c), (a, c, d))) / 6.0
+    assert volume == pytest.approx(shape.volume, rel=0.03)
+    assert volume <= shape.volume * (1.0 + 1e-12), "corners lie on it"
+    edges = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
+    assert {tuple(edge) for edge in edges} == {tuple(edge[::-1]) for edge in edges}, "closed, and turned one way"
+    for d in directions(50):
+        assert (points @ d).max() == pytest.approx(reach(shape.NUMBER, d, shape.half), rel=0.02)
+    sampled = shape.samples(0.01, 1.0, False)
+    assert sampled.shares.sum() * 0.01**3 == pytest.approx(shape.volume, rel=1e-12)
+    square = (sampled.shares[:, None] * sampled.offsets**2).sum(0) / sampled.shares.sum()
+    assert [square[1] + square[2], square[0] + square[2], square[0] + square[1]] == pytest.approx(
+        shape.inertia(1.0), rel=0.02
+    )
+
+
+@pytest.mark.parametrize("shape", GIVEN, ids=str)
+def test_patches_cover_the_surface(shape):
+    s = shape.samples(0.02, 0.06, False)
+    areas = {"box": 2.0 * sum(shape.size[a] * shape.size[a - 1] for a in range(3)), "sphere": math.pi * 0.3**2}
+    assert s.area.sum() == pytest.approx(areas[shape.kind], rel=1e-9)
+    assert (s.area[:, None] * s.normal).sum(0) == pytest.approx(np.zeros(3), abs=0.05 * s.area[0])
+    for place, normal, at in zip(s.place, s.normal, s.sample, strict=True):
+        assert distance(shape.NUMBER, tuple(place), shape.half, ALL)[0] == pytest.approx(0.0, abs=1e-12)
+        assert 0.0 < (place - s.offsets[at]) @ normal < 0.011
+    depth = [-distance(shape.NUMBER, tuple(p), shape.half, ALL)[0] for p in s.offsets]
+    assert min(depth) > 0.0 and max(depth) < 0.06
+
+
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.5, 0.9, 0.999])
+def test_a_sphere_floats_at_its_draught(share):
+    ball = sphere(0.2)
+    h = ball.draught(share * 1000.0, 1000.0)
+    assert math.pi * h * h * (3.0 * 0.1 - h) / 3.0 == pytest.approx(share * ball.volume, rel=1e-9)
+
+
+def test_overlaps_with_balls():
+    turn = matrices(np.array([from_angles((20.0, 30.0, 40.0))]))[0]
+    box, ball = TurnedBox(np.zeros(3), np.array([0.1, 0.2, 0.3]), turn), np.full(3, 0.05)
+    for x, expected in ((0.14, 0.01), (0.17, -0.02)):
+        other = TurnedBox(turn @ (x, 0.0, 0.1), ball, np.eye(3), True)
+        assert overlap(box, other) == overlap(other, box) == pytest.approx(expected)
+    one, two = (TurnedBox(np.array([x, 0.0, 0.0]), ball, np.eye(3), True) for x in (0.0, 0.09))
+    assert overlap(one, two) == pytest.approx(0.01)
+    assert overlap(one, two, (0.02, 0.0, 0.0)) == pytest.approx(-0.01)
+
+
+@pytest.mark.parametrize("change, said", [
+    ({"shape": {"kind": "ball", "diameter": 0.1}}, "must be 'box' or 'sphere'"),
+    ({"shape": {"kind": "sphere", "size": [0.1, 0.1, 0.1]}}, "bodies.a.shape.size: unknown key"),
+    ({"shape": {"kind": "sphere", "diameter": 0.01}}, "shape.diameter = 0.01: thinner than two particles"),
+    ({"position": [0.03, 0.1, 0.1]}, "outside the box, reaches from x = -0.02"),
+    ({"position": [0.2, 0.1, "float"], "density": 2000.0}, "does not float"),
+])  # fmt: skip
+def test_what_is_wrong_with_a_sphere_is_told(change, said):
+    body = {"name": "a", "shape": {"kind": "sphere", "diameter": 0.1}, "density": 500.0, "material": "wood"}
+    given = tank(0.4, 0.4, 0.01, (0.4, 0.2), 0.2)
+    with pytest.raises(InputError) as error:
+        parse(given | {"materials": WOOD, "bodies": [{**body, "position": [0.2, 0.1, 0.1], **change}]})
+    assert said in str(error.value)
+
+
+def test_a_plane_has_no_spheres():
+    body = {"name": "a", "shape": {"kind": "sphere", "diameter": 0.1}, "density": 500.0, "material": "wood"}
+    with pytest.raises(InputError, match="a 2D case has none"):
+        parse(tank(0.4, 0.4, 0.01, (0.4, 0.2)) | {"materials": WOOD, "bodies": [{**body, "position": [0.2, 0.5, 0.1]}]})
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.5, 0.8545, 1.0])
+def test_a_dropped_sphere_rebounds(restitution):
+    ball = Bodies([sphere(0.05)], [0.06], [(0.5, 0.5, 0.0251)], velocity=[(0.0, 0.0, -0.5)])
+    contacts = Contacts(ball, case(restitution=restitution, gravity=(0.0, 0.0, 0.0), young=1e8))
+    before = budget(ball, contacts, (0.0, 0.0, 0.0))
+    go(ball, contacts, 1e-4, 100)
+    assert contacts.count == 0
+    assert ball.velocity[0, 2] / 0.5 == pytest.approx(restitution, rel=0.05)
+    assert budget(ball, contacts, (0.0, 0.0, 0.0)) == pytest.approx(before, rel=0.01)
+
+
+def test_a_sphere_rolls_down_a_slope_without_slipping():
+    """5/7 g sin a (a solid sphere), on a floor that pushes back to the right depth."""
+    slope = math.radians(20.0)
+    down = (9.81 * math.sin(slope), 0.0, -9.81 * math.cos(slope))
+    ball = Bodies([sphere(0.05)], [0.06], [(0.3, 0.5, 0.025)])
+    contacts = Contacts(ball, case(gravity=down, restitution=0.3, friction=0.5, young=1e7))
+    go(ball, contacts, 2e-4, 1500)
+    assert ball.velocity[0, 0] == pytest.approx(5.0 / 7.0 * down[0] * 0.3, rel=0.01)
+    assert ball.spin[0, 1] * 0.025 == pytest.approx(ball.velocity[0, 0], rel=0.01)
+
+
+@pytest.mark.parametrize("shapes", [
+    [sphere(0.05), sphere(0.03)],
+    [sphere(0.05), *boxes((0.02, 0.03, 0.01))],
+    [*boxes((0.02, 0.03, 0.01)), sphere(0.05)],
+])  # fmt: skip
+def test_action_is_reaction_with_spheres(shapes):
+    bodies = Bodies(
+        shapes,
+        [0.06, 0.1],
+        [(0.5, 0.5, 0.55), (0.505, 0.51, 0.5)],
+        quaternion=[from_angles((10.0, 20.0, 0.0)), (1.0, 0.0, 0.0, 0.0)],
+        velocity=[(0.0, 0.0, -0.6), (0.0, 0.0, 0.4)],
+        spin=[(1.0, 2.0, 3.0), (0.0, 0.0, 0.0)],
+    )
+    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), young=1e8))
+    before, energy = momenta(bodies), bodies.kinetic_energy()
+    go(bodies, contacts, 1e-4, 400)
+    assert bodies.velocity[0, 2] > bodies.velocity[1, 2] and contacts.count == 0, "they have parted"
+    assert budget(bodies, contacts, (0.0, 0.0, 0.0)) == pytest.approx(energy, rel=0.01)
+    for now, then in zip(momenta(bodies), before, strict=True):
+        assert now == pytest.approx(then, abs=1e-14)
+
+
+def test_no_contact_of_spheres_creates_energy():
+    for seed in range(150):
+        random = np.random.default_rng(seed)
+        count = int(random.integers(1, 5))
+        shapes = [
+            sphere(random.uniform(0.02, 0.06)) if random.random() < 0.6 else boxes(random.uniform(0.01, 0.03, 3))[0]
+            for _ in range(count)
+        ]
+        away = random.uniform(-0.06, 0.06, (count, 3))
+        bodies = Bodies(
+            shapes,
+            [900.0 * shape.volume for shape in shapes],
+            (0.5, 0.5, 0.1) + away,
+            velocity=random.normal(0.0, 0.5, (count, 3)) - 20.0 * away,
+            spin=random.normal(0.0, 10.0, (count, 3)),
+        )
+        given = case(restitution=random.uniform(0.1, 1.0), friction=random.choice([0.0, 0.5]), young=1e7)
+        contacts = Contacts(bodies, given)
+        start = budget(bodies, contacts)
+        for step in range(40):
+            contacts.step(bodies, np.zeros((count, 6)), step * 5e-4, min(5e-4, contacts.limit()))
+            held = bodies.kinetic_energy() + bodies.potential_energy((0.0, 0.0, -9.81)) + contacts.elastic_energy()
+            assert held <= start + 1e-6 * abs(start) + 1e-9, (seed, step)
+
+
+def test_a_plate_on_balls_comes_to_rest():
+    """A plate on three balls on the floor, at rest within 1 s; each contact is sqrt(F / (k pi R)) deep."""
+    legs = [(0.5 + 0.05 * math.cos(a), 0.5 + 0.05 * math.sin(a), 0.02) for a in (0.0, 2.1, 4.2)]
+    shapes = [*[sphere(0.04)] * 3, *boxes((0.08, 0.08, 0.01))]
+    bodies = Bodies(shapes, [0.03, 0.03, 0.03, 0.2], [*legs, (0.5, 0.5, 0.0502)])
+    contacts = Contacts(bodies, case(restitution=0.3, friction=0.5, young=1e7))
+    go(bodies, contacts, 2e-4, 5000)
+    assert np.abs(bodies.velocity).max() < 1e-3
+    stiffness = foundation(*[SimpleNamespace(young=1e7, poisson=0.4)] * 2, 0.01)
+    deep = [math.sqrt(9.81 * m / 3.0 / (stiffness * math.pi * 0.02)) for m in (0.2, 0.29)]
+    assert bodies.position[3, 2] == pytest.approx(0.05 - sum(deep), abs=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("density", [300.0, 900.0])
+def test_a_floating_sphere_stays_at_its_draught(density):
+    body = {"name": "a", "shape": {"kind": "sphere", "diameter": 0.12}, "density": density, "material": "wood"}
+    given = tank(0.24, 0.3, 0.01, (0.24, 0.16), 0.24)
+    given["run"]["settle"] = 1.0
+    s = simulation(given | {"materials": WOOD, "bodies": [{**body, "position": [0.12, 0.12, "float"]}]})
+    start = s.bodies.position[0, 2]
+    while s.time < 1.0:
+        s.step()
+    p, at = s.domain.particles, s.near.fluid
+    level = np.sort(p.z[at])[-200:].mean() + 0.005
+    assert s.bodies.position[0, 2] - level == pytest.approx(start - 0.16, abs=0.0025)
+    assert np.linalg.norm(s.bodies.velocity[0]) < 0.01
