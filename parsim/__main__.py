@@ -3,8 +3,9 @@
 import functools
 import os
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -42,7 +43,7 @@ Row = Annotated[int | None, typer.Option(metavar="N", help="the row of the table
 Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
 
 
-def main(arguments=None):
+def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command in `arguments` (default: those of the process); returns the exit code."""
     try:
         app(args=arguments, prog_name="parsim")
@@ -51,7 +52,7 @@ def main(arguments=None):
     return exits.DONE
 
 
-def command(function):
+def command(function: Callable[..., int | None]) -> Callable[..., int | None]:
     """Make `function` a command: what it returns, or the error it raises, becomes the exit code."""
 
     @functools.wraps(function)
@@ -75,7 +76,7 @@ def run(
     ranks: Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="kernel variant, in place of the fastest")] = None,
     walltime: Walltime = None,
-):
+) -> int:
     """Run a case. Under mpirun or srun every rank runs this command."""
     from parsim.case.load import load
 
@@ -106,7 +107,7 @@ def resume(
     changes: Changes = None,
     table: TableFile = None,
     row: Row = None,
-):
+) -> int:
     """Go on with a run from its newest whole checkpoint, on any number of ranks, to the same bits."""
     from parsim.case.load import load
     from parsim.domain.comm import Comm
@@ -174,7 +175,7 @@ def check(
     until: Until = None,
     ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")] = 1,
     table: TableFile = None,
-):
+) -> None:
     """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
     from parsim.commands.check import check_cases
 
@@ -182,7 +183,7 @@ def check(
 
 
 @command
-def info(out: Folder):
+def info(out: Folder) -> None:
     """Say what an output folder holds."""
     from parsim.commands.info import tell
 
@@ -193,7 +194,7 @@ def info(out: Folder):
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="output folder")],
     second: Annotated[Path, typer.Argument(metavar="B", help="output folder")],
-):
+) -> int:
     """Compare two output folders bit by bit; exit code 3 when they differ."""
     from parsim.output.compare import compare_outputs
 
@@ -201,7 +202,7 @@ def compare(
 
 
 @command
-def report(out: Folder):
+def report(out: Folder) -> int:
     """Make tables, figures and a page from an output folder."""
     from parsim.report import make_report
 
@@ -212,7 +213,7 @@ def report(out: Folder):
 def bench(
     as_json: Annotated[bool, typer.Option("--json", help="print every figure as JSON")] = False,
     with_model: Annotated[bool, typer.Option("--model", help="fit and print the cost model instead")] = False,
-):
+) -> int:
     """Measure what parsim does on this machine: speed, balance, memory, start-up. Takes some ten minutes."""
     from parsim.bench import bench_machine
 
@@ -220,7 +221,7 @@ def bench(
 
 
 @command
-def doctor():
+def doctor() -> int:
     """Say whether this machine can run parsim: packages, MPI, threads, disk."""
     from parsim.commands.doctor import examine_machine
 
@@ -228,7 +229,7 @@ def doctor():
 
 
 @command
-def schema():
+def schema() -> None:
     """Print the JSON schema of case files, for editors that complete and check TOML."""
     import json
 
@@ -245,7 +246,7 @@ def new(
         typer.Option("--from", metavar="EXAMPLE", help="start from an example, in place of a commented case"),
     ] = None,
     listed: Annotated[bool, typer.Option("--list", help="print the examples")] = False,
-):
+) -> None:
     """Write a case to start from; never overwrites."""
     from parsim.commands import new as cases
 
@@ -255,7 +256,7 @@ def new(
         cases.new_case(name, example)
 
 
-def _version(asked: bool):
+def _version(asked: bool) -> None:
     if asked:
         print(f"parsim {__version__}")
         raise typer.Exit()
@@ -266,11 +267,11 @@ def options(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="print the version and end")
     ] = False,
-):
+) -> None:
     """Options of the program as a whole."""
 
 
-def program():
+def program() -> NoReturn:
     """The command of the shell: `main`, but for what HDF5 does at the end of a process when a disk was full."""
     stop.listen()
     code = main()

@@ -1,6 +1,13 @@
 """The errors that a user can cause, with the exit code each one ends in, and what was perhaps meant instead."""
 
+from __future__ import annotations
+
 from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
 
 _LONGEST = 1000  # characters of a message
 
@@ -8,7 +15,7 @@ _LONGEST = 1000  # characters of a message
 class InputError(Exception):
     """Bad input; carries every message found at once, each a line of bounded length. Exit code 2."""
 
-    def __init__(self, messages):
+    def __init__(self, messages: str | Iterable[str]) -> None:
         self.messages = [_line(message) for message in ([messages] if isinstance(messages, str) else messages)]
         super().__init__("\n".join(self.messages))
 
@@ -20,20 +27,20 @@ class RunError(Exception):
 class WriteError(Exception):
     """A file or folder that cannot be written. Exit code 74. `shared`: raised on all ranks; rank 0 tells of it."""
 
-    def __init__(self, path, reason, shared=False):
+    def __init__(self, path: Path | str, reason: str | Exception, shared: bool = False) -> None:
         self.path, self.reason, self.shared = path, reason, shared
         super().__init__(path, reason)  # so that it can be sent from rank to rank
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"cannot write {self.path}: {self.reason}"
 
 
-def nearest(name, known, likeness=0.7):
+def nearest(name: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
     """The one among the texts `known` that is most like the text `name`, None where none is: 1 would be the same."""
     return next(iter(get_close_matches(name, known, 1, likeness)), None)
 
 
-def suggestion(meant):
+def suggestion(meant: Path | str | None) -> str:
     """The words that end a message about a name, "; did you mean ...?"; none where `meant` is None."""
     return "" if meant is None else f"; did you mean {meant}?"
 

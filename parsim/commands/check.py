@@ -1,5 +1,8 @@
 """What the command `check` says of a case, or of all runs of a table."""
 
+from collections.abc import Iterable
+from pathlib import Path
+
 from parsim.case import runs_table as tables
 from parsim.case.estimate import brief, lines
 from parsim.case.load import load
@@ -12,7 +15,9 @@ def _check_ranks(case, ranks):
     check_ranks(case, ranks)
 
 
-def check_cases(path, changes, until, ranks, table=None):
+def check_cases(
+    path: Path | str, changes: Iterable[str] | None, until: float | None, ranks: int, table: Path | str | None = None
+) -> None:
     """Print what a case will cost on `ranks` ranks; with a `table` (CSV file) that of each row. Raises InputError."""
     if table:
         _every_row(path, changes, until, ranks, table)

@@ -1,10 +1,12 @@
 """What the command `info` says of an output folder."""
 
+from pathlib import Path
+
 from parsim.output.lock import held
 from parsim.output.reader import open as open_run
 
 
-def tell(out):
+def tell(out: Path | str) -> None:
     """Print what the output folder `out` holds. Raises InputError when it is none."""
     found = open_run(out)
     told = {key: value for key, value in found.info.items() if not isinstance(value, dict | list)}

@@ -7,7 +7,7 @@ from parsim.case import examples, file, model
 from parsim.errors import InputError, WriteError, suggestion
 
 
-def new_case(name, example=None):
+def new_case(name: str | None, example: str | None = None) -> None:
     """Write NAME.toml: the commented case, or the `example` with all its values in one file; never overwrites.
 
     Raises InputError for a name that is taken or an example that there is not, WriteError where it cannot be written.
@@ -42,7 +42,7 @@ def _text(example):
     )
 
 
-def show():
+def show() -> None:
     """Print the names and titles of the examples."""
     for name, path in examples.paths().items():
         print(f"{name:<28} {file.read(path).get('title', '')}")

@@ -3,13 +3,14 @@
 import sys
 import time
 import traceback
+from collections.abc import Callable
 
 from parsim.errors import InputError, RunError, WriteError
 
 DONE, FAILED, BAD_INPUT, CANNOT_WRITE, INTERRUPTED = 0, 1, 2, 74, 130
 
 
-def code_of(work):
+def code_of(work: Callable[[], int | None]) -> int:
     """Exit code of `work`, a function without arguments that returns a code or None; errors are told and counted."""
     from parsim.launch.mpirun import world
 

@@ -13,8 +13,10 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import FrameType
 
 from parsim.errors import InputError
 
@@ -52,18 +54,18 @@ def _started():
     return "", 1, 0
 
 
-def started():
+def started() -> bool:
     """Whether a launcher started this process."""
     return bool(_started()[0])
 
 
-def world():
+def world() -> tuple[int, int]:
     """(rank, size) as the launcher told this process, without loading MPI; (0, 1) when nothing launched it."""
     _, size, rank = _started()
     return rank, size
 
 
-def check(size):
+def check(size: int) -> None:
     """Refuse a communicator of one process where the launcher started several.
 
     Each of those processes would take itself for the whole job and overwrite the others' output.
@@ -80,7 +82,7 @@ def check(size):
     )
 
 
-def cores():
+def cores() -> int:
     """Hardware cores open to this process; two hardware threads of a core count once, as they do for Open MPI."""
     here = os.sched_getaffinity(0)
     try:
@@ -94,7 +96,7 @@ def _core(cpu):
     return (topology / "physical_package_id").read_text(), (topology / "core_id").read_text()
 
 
-def terminal():
+def terminal() -> int:
     """Columns of the terminal this process writes to, 0 when it writes to a file or a pipe.
 
     Open MPI gives every rank a terminal of its own as standard output, whatever mpirun itself writes to:
@@ -115,7 +117,7 @@ def terminal():
 
 
 @functools.cache
-def library():
+def library() -> tuple[str, str]:
     """(version, path) of the MPI library that mpi4py loads; raises InputError when there is none."""
     found = subprocess.run([sys.executable, "-c", _LIBRARY], capture_output=True, text=True, timeout=60)
     if found.returncode:
@@ -128,7 +130,7 @@ def library():
 
 
 @functools.cache
-def launcher():
+def launcher() -> str:
     """Path of the mpirun that belongs to the MPI library mpi4py loads; raises InputError when there is none."""
     # mpi4py prefers a library inside its own environment, so a launcher there needs no further look
     here = Path(sys.prefix, "bin", "mpirun")
@@ -155,7 +157,7 @@ def _open_mpi(program):
     return int(found[1]) if found else 0
 
 
-def command(ranks, arguments):
+def command(ranks: int, arguments: Iterable[object]) -> list[str]:
     """The full command line that starts `arguments` (a list, the program first) as `ranks` processes."""
     program = launcher()
     options, version = [], _open_mpi(program)
@@ -171,7 +173,7 @@ def command(ranks, arguments):
     return [program, *options, "-n", str(ranks), *map(str, arguments)]
 
 
-def environment():
+def environment() -> dict[str, str]:
     """This process's environment with what mpirun needs besides: leave to run as root, for a root user only."""
     variables = dict(os.environ)
     if os.geteuid() == 0:
@@ -179,14 +181,15 @@ def environment():
     return variables
 
 
-def mpirun(ranks, arguments, stopped=lambda: False):
+def mpirun(ranks: int, arguments: Iterable[object], stopped: Callable[[], bool] = lambda: False) -> int:
     """Run `arguments` (a list, the program first) as `ranks` processes and return the exit code of the job.
 
     Each of SIGNALS comes to the ranks as SIGUSR1, for mpirun leaves them no time after the others; a second one other
     than SIGUSR1 ends the job at once. `stopped`() tells whether SIGUSR1 has come before. The job is ended too when this
     process is killed.
     """
-    heard, began = [], time.monotonic()
+    heard: list[float] = []
+    began = time.monotonic()
 
     def hand_on(number, _):
         if number != signal.SIGUSR1 and heard and time.monotonic() - heard[0] > SAME_SIGNAL:
@@ -217,7 +220,8 @@ def mpirun(ranks, arguments, stopped=lambda: False):
 
 def _pass_on(lines):
     """Print what mpirun says, but for its alarms at the end of ranks, which are returned."""
-    held, alarms = [], b""
+    held: list[bytes] = []
+    alarms = b""
     for line in lines:
         rule = set(line.strip()) == {ord("-")}
         if held or rule:
@@ -239,13 +243,13 @@ def _say(text):
         sys.stderr.flush()
 
 
-def die_with_parent(number=signal.SIGKILL):
+def die_with_parent(number: int = signal.SIGKILL) -> None:
     """Ask Linux to send this process a signal when its parent is gone."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, number)
 
 
 @contextmanager
-def heeding(handler):
+def heeding(handler: Callable[[int, FrameType | None], object]) -> Iterator[None]:
     """Have `handler` called for SIGNALS, but for those that this process was told to ignore, as by nohup."""
     before = {number: signal.getsignal(number) for number in SIGNALS}
     heeded = {number: handled for number, handled in before.items() if handled != signal.SIG_IGN}
@@ -268,7 +272,7 @@ def _as_child():
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
 
 
-def fault(ranks=2, timeout=60):
+def fault(ranks: int = 2, timeout: float = 60) -> str:
     """Why `ranks` processes cannot add up their ranks, in one line; "" when they can."""
     try:
         line = command(ranks, [sys.executable, "-c", _SUM])

@@ -4,6 +4,7 @@ import os
 import signal
 import time
 from pathlib import Path
+from typing import Any, Self
 
 from parsim.errors import InputError
 from parsim.launch import mpirun
@@ -13,16 +14,16 @@ REASONS = ("", "walltime", *(number.name for number in mpirun.SIGNALS))  # numbe
 _UNITS = (1.0, 60.0, 3600.0, 86400.0)
 
 
-_early = []  # signals that came before anything could be done about them
+_early: list[int] = []  # signals that came before anything could be done about them
 
 
-def listen():
+def listen() -> None:
     """Note SIGUSR1 from now on, which would end a process that does not yet listen to it; hear SIGTERM (`launch`)."""
     signal.signal(signal.SIGUSR1, lambda number, _: _early.append(number))
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
 
 
-def early():
+def early() -> bool:
     """Whether a signal has been noted since `listen`."""
     return bool(_early)
 
@@ -34,19 +35,20 @@ class Stop:
     start of this process.
     """
 
-    def __init__(self, walltime=None):
+    def __init__(self, walltime: float | None = None) -> None:
         self.walltime = walltime
-        self._first, self._number = (time.monotonic(), _early[0]) if _early else (None, None)
+        self._number = _early[0] if _early else None
+        self._first = None if self._number is None else time.monotonic()
         self._heeding = mpirun.heeding(self._hear)
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         self._heeding.__enter__()
         return self
 
-    def __exit__(self, *told):
+    def __exit__(self, *told: Any) -> None:
         self._heeding.__exit__(*told)
 
-    def reason(self, margin):
+    def reason(self, margin: float) -> int:
         """Number in REASONS of why this process should stop, 0 to go on; `margin`, s, is what stopping takes."""
         if self._number is not None:
             return REASONS.index(signal.Signals(self._number).name)
@@ -60,13 +62,13 @@ class Stop:
             os._exit(128 + number)
 
 
-def age():
+def age() -> float:
     """Seconds since this process was started."""
     ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
     return float(Path("/proc/uptime").read_text().split()[0]) - ticks / os.sysconf("SC_CLK_TCK")
 
 
-def seconds(text):
+def seconds(text: str) -> float:
     """Seconds of a walltime as schedulers write it: minutes, M:S, H:M:S or D-H:M:S. Raises InputError."""
     days, dash, rest = str(text).rpartition("-")
     parts = rest.split(":")

@@ -5,13 +5,19 @@ and gets no further for `patience` seconds, or is silent for so long, is taken f
 and says which rank it was. Those that wait for it are not to blame, unless all wait for one another.
 """
 
+from __future__ import annotations
+
 import os
 import sys
 import threading
 import time
 import traceback
+from typing import TYPE_CHECKING, Self
 
 from parsim.launch import mpirun
+
+if TYPE_CHECKING:
+    from parsim.domain.comm import Comm
 
 _LOOKS = 10  # in the patience
 _DEADLOCK = 3.0  # times the patience, for all ranks waiting
@@ -26,14 +32,14 @@ class Watch:
     `comm` tells of this rank: `calls`, messages and sums so far, and `waiting`, whether it is in one now.
     """
 
-    def __init__(self, comm, patience):
+    def __init__(self, comm: Comm, patience: float) -> None:
         self._comm, self._patience = comm, patience
         self._parent = os.getppid() if mpirun.started() else None
         self._main = threading.get_ident()
         self._end = threading.Event()
         self._thread = threading.Thread(target=self._run, name="watch", daemon=True)
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         self._ring = self._comm.ring()
         if self._comm.size > 1 and not self._ring and self._comm.rank == 0:
             print(
@@ -68,7 +74,7 @@ class Watch:
             if news is not None and (news[1] or news != heard):
                 since, heard = now, news
             if now - since > self._patience:
-                self._accuse(heard)
+                self._accuse(self._ring.left, heard)
             if self._comm.calls != calls:
                 calls, moved, told = self._comm.calls, now, False
             elif now - moved > _DEADLOCK * self._patience:
@@ -77,10 +83,10 @@ class Watch:
                 self._confess()
                 told = True
 
-    def _accuse(self, heard):
+    def _accuse(self, left, heard):
         state = "is silent" if heard is None else "is stuck or silent"
         print(
-            f"error: rank {self._ring.left} of {self._comm.size} has made no progress for {self._patience:g} s (it "
+            f"error: rank {left} of {self._comm.size} has made no progress for {self._patience:g} s (it "
             f"{state}); rank {self._comm.rank} ends the job",
             file=sys.stderr,
             flush=True,

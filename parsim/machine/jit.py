@@ -6,7 +6,16 @@
 which depends on nothing but that particle's own list.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 from parsim.machine import variant
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numba.core.dispatcher import Dispatcher
 
 variant.apply()
 
@@ -15,16 +24,16 @@ from numba import njit, prange  # noqa: E402, F401  (must follow the settings ab
 FAST = {"reassoc", "nsz", "contract"}
 
 
-def kernel(function):
+def kernel(function: Callable[..., Any]) -> Dispatcher:
     """Compile strict and cached, without threads."""
     return njit(function, cache=True, error_model="numpy", nogil=True)
 
 
-def each(function):
+def each(function: Callable[..., Any]) -> Dispatcher:
     """Compile strict and cached, threaded over `prange`."""
     return njit(function, cache=True, error_model="numpy", nogil=True, parallel=True)
 
 
-def rows(function):
+def rows(function: Callable[..., Any]) -> Dispatcher:
     """Compile cached, threaded over `prange`, neighbour sums reordered for SIMD."""
     return njit(function, cache=True, error_model="numpy", nogil=True, parallel=True, fastmath=FAST)

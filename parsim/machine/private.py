@@ -8,7 +8,7 @@ from pathlib import Path
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
-def folder(path):
+def folder(path: Path | str) -> Path:
     """`path` without symbolic links, made with what it lacks of parents if it is not there, for this user alone.
 
     Raises PermissionError, which names the place at fault, where another user could read the folder, or put another one

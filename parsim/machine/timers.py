@@ -1,6 +1,7 @@
 """Wall time by phase of the step."""
 
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 
@@ -10,13 +11,13 @@ class Timers:
     A phase inside another one, such as a wait for a message in a sweep, is taken out of that one.
     """
 
-    def __init__(self):
-        self.seconds = {}
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
         self.start = time.perf_counter()
         self._inner = 0.0  # seconds of the phases that have ended inside the present one
 
     @contextmanager
-    def __call__(self, phase):
+    def __call__(self, phase: str) -> Iterator[None]:
         """Count the time of the block to `phase`."""
         outer, self._inner = self._inner, 0.0
         begin = time.perf_counter()

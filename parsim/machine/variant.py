@@ -40,7 +40,7 @@ def _host():
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features()
 
 
-def possible():
+def possible() -> list[str]:
     """Names of the variants that this processor can run, the safest first."""
     _, features = _host()
     if not features.get("avx2"):
@@ -48,7 +48,7 @@ def possible():
     return [name for name in VARIANTS if name != "host" and (name.startswith("256") or features.get("avx512vl"))]
 
 
-def checked(name):
+def checked(name: str) -> str:
     """`name` if this processor can run that variant; InputError otherwise."""
     if name not in possible():
         raise InputError(
@@ -58,7 +58,7 @@ def checked(name):
     return name
 
 
-def chosen():
+def chosen() -> str | None:
     """The variant of this process or, None before any choice, the one remembered for this kind of processor."""
     if NAME in os.environ:
         return checked(os.environ[NAME])
@@ -69,7 +69,7 @@ def chosen():
     return name if name in possible() else None
 
 
-def remember(name):
+def remember(name: str) -> None:
     """Note `name` as the choice for this kind of processor, where the cache can be written."""
     draft = _memory().with_suffix(f".{os.getpid()}")
     try:
@@ -80,7 +80,7 @@ def remember(name):
         pass
 
 
-def apply():
+def apply() -> None:
     """Set what numba reads when it is imported: processor, features, cache folder, threads."""
     if "numba" in sys.modules:
         return
@@ -93,13 +93,13 @@ def apply():
     os.environ.setdefault("NUMBA_NUM_THREADS", _threads())
 
 
-def code():
+def code() -> str:
     """A short name of the machine code itself: variant, sources, processor, numba and Python."""
     parts = (source_hash(), *_host()[:1], os.environ[NAME], version("numba"), sys.version)
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions of all that the last bits of a result depend on, besides the variant."""
     return {
         "parsim": __version__,
@@ -109,7 +109,7 @@ def versions():
     }
 
 
-def source_hash():
+def source_hash() -> str:
     """Hash of path, date and text of all files with kernels.
 
     Numba does not notice that a kernel's imported helper has changed, and forgets what it cached once a source file has
@@ -124,7 +124,7 @@ def source_hash():
     return digest.hexdigest()[:16]
 
 
-def mark(folder):
+def mark(folder: Path | str) -> Path:
     """The file in a cache folder that says that the machine code of this process is complete there."""
     return Path(folder, f"complete-{code()}")
 
