@@ -2,12 +2,14 @@
 
 import json
 import sys
+from collections.abc import Iterator
+from typing import Any
 
 from parsim.bench import model
 from parsim.bench.account import SUPPORTS, everything
 
 
-def bench_machine(as_json, with_model):
+def bench_machine(as_json: bool, with_model: bool) -> int:
     """Measure and print: the ratios first, or everything as JSON; with the cost model if wanted. Returns 0."""
 
     def tell(line):
@@ -21,7 +23,7 @@ def bench_machine(as_json, with_model):
     return 0
 
 
-def lines(found):
+def lines(found: dict[str, Any]) -> Iterator[str]:
     """The account in words: ratios, then rates, shares of the step, sweeps, sizes."""
     yield from _ratios(found)
     yield ""

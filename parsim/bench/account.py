@@ -8,7 +8,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from importlib.metadata import version
+from typing import Any
 
 from parsim.bench import cases
 from parsim.launch import mpirun
@@ -27,7 +29,9 @@ class BenchError(Exception):
     """A measurement did not end well; carries what it said."""
 
 
-def measured(order, ranks=1, threads=1, environment=None):
+def measured(
+    order: dict[str, Any], ranks: int = 1, threads: int = 1, environment: dict[str, str] | None = None
+) -> dict[str, Any]:
     """Figures of one order of `parsim.bench.worker`, and `launched`, the time at which its job was started, s."""
     words = [sys.executable, "-P", "-m", "parsim.bench.worker", json.dumps(order)]
     line = words if ranks == 1 else mpirun.command(ranks, words)
@@ -39,7 +43,7 @@ def measured(order, ranks=1, threads=1, environment=None):
     return json.loads(ran.stdout.strip().splitlines()[-1]) | {"launched": began, "ranks": ranks, "threads": threads}
 
 
-def everything(tell):
+def everything(tell: Callable[[str], object]) -> dict[str, Any]:
     """All figures of this machine, as a dict that JSON can hold; `tell` (a function of a line) hears what is next."""
     tell("start-up, cold and warm")
     cold, warm = start_up()
@@ -73,7 +77,7 @@ def everything(tell):
     }
 
 
-def start_up():
+def start_up() -> tuple[float, float]:
     """Seconds from the start of a job of two ranks to the end of its first step: with empty caches, and with full."""
     order = {"case": cases.floating_blocks(0.005, 3.1), "warm": 0, "steps": 1}
     with tempfile.TemporaryDirectory() as empty:
@@ -91,9 +95,9 @@ def _kernels(support):
     return measured({"case": cases.still_water(50_000, support), "warm": 12, "steps": 1, "kernels": True})["kernels"]
 
 
-def rates(tell):
+def rates(tell: Callable[[str], object]) -> dict[str, dict[str, Any]]:
     """Rate and phases of each case at each support, on one core."""
-    made = {
+    made: dict[str, Callable[[float], dict[str, Any]]] = {
         "still_water": lambda support: {"case": cases.still_water(50_000, support)},
         "dam_break": lambda support: {"case": cases.dam_break(0.005, support, _SPEED), "warm": 30},
         "floating_blocks": lambda support: {"case": cases.floating_blocks(0.005, support), "record": True},
@@ -105,7 +109,7 @@ def rates(tell):
     return table
 
 
-def paired(ways, case=None, steps=100):
+def paired(ways: dict[str, tuple[int, int]], case: dict[str, Any] | None = None, steps: int = 100) -> list[float]:
     """Efficiency of every way but the first: name -> (ranks, threads), on two cores against one; best of some turns.
 
     Water runs across the cut all the time.

@@ -1,16 +1,18 @@
 """The cases of the benchmark, as nested dicts of a case file."""
 
+from typing import Any
+
 _WOOD = {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}
 
 
-def still_water(count, support):
+def still_water(count: int, support: float) -> dict[str, Any]:
     """A cube of about `count` particles of water at rest in a tank."""
     edge, l0 = round(count ** (1 / 3)), 0.01
     size = round(edge * l0, 9)
     return _case(support, l0, [size, size, round(size + 5 * l0, 9)], [{"min": [0.0, 0.0, 0.0], "max": [size] * 3}])
 
 
-def sea(count, support):
+def sea(count: int, support: float) -> dict[str, Any]:
     """About `count` particles of water at rest, 24 deep, without sides: the same mixture of particles at any size."""
     deep, l0 = 24, 0.01
     size = [round(round((count / deep) ** 0.5) * l0, 9)] * 2
@@ -19,13 +21,15 @@ def sea(count, support):
     return case
 
 
-def dam_break(spacing, support, speed=0.0, length=0.15, section=0.15):
+def dam_break(
+    spacing: float, support: float, speed: float = 0.0, length: float = 0.15, section: float = 0.15
+) -> dict[str, Any]:
     """Water, `length` long and `section` high and wide (m), that runs down a tank; `speed`, m/s, is its first one."""
     column = {"min": [0.0, 0.0, 0.0], "max": [length, section, section], "velocity": [speed, 0.0, 0.0]}
     return _case(support, spacing, [0.75, section, 0.3], [column])
 
 
-def floating_blocks(spacing, support):
+def floating_blocks(spacing: float, support: float) -> dict[str, Any]:
     """Four blocks on 15 cm of water behind a gate that rises: the ice release of Amaro et al. (2021), case 1."""
     case = _case(support, spacing, [0.7, 0.15, 0.3], [{"min": [0.0, 0.0, 0.0], "max": [0.15, 0.15, 0.15]}])
     case["gate"] = {"min_x": 0.15, "max_x": 0.155}

@@ -1,6 +1,9 @@
 """Single sweeps, timed, and what bounds them: the reading of the neighbours' fields, and the arithmetic."""
 
+from __future__ import annotations
+
 import time
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +13,9 @@ from parsim.fluid.wcmps.fields import VISCOUS, isotropy
 from parsim.machine.jit import prange, rows
 from parsim.particles.state import FLUID
 from parsim.particles.tables import Traceless, Vectors
+
+if TYPE_CHECKING:
+    from parsim.run.simulation import Simulation
 
 
 @rows
@@ -42,7 +48,7 @@ def true_pairs(at, lists, place, radius2, out):
         out[i] = count
 
 
-def sweeps(simulation, calls):
+def sweeps(simulation: Simulation, calls: int) -> dict[str, float]:
     """Nanoseconds per true pair of each sweep over the fluid, of its gathers alone, and of it with all data in cache.
 
     `listed` is the number of listed pairs over that of true ones.

@@ -10,6 +10,8 @@ C cores do the work of R ranks; `switch` is what each rank beyond the cores adds
 """
 
 import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +28,7 @@ _LAYERS = 3.5  # spacings of one halo
 _STEPS, _EFFICIENT = 40, 0.7
 
 
-def fitted(tell):
+def fitted(tell: Callable[[str], object]) -> dict[str, Any]:
     """Measure and fit; returns coefficients, the runs they come from with the model's time, and predictions."""
     link = measured({"case": trough(*TROUGHS[0]), "messages": True}, min(2, mpirun.cores()))["messages"]
     runs = []
@@ -48,7 +50,7 @@ def fitted(tell):
     }
 
 
-def trough(along, across, deep):
+def trough(along: int, across: int, deep: int) -> dict[str, Any]:
     """Water that runs along a periodic trough, `along` x `across` x `deep` particles."""
     l0 = 0.01
     size = [round(n * l0, 9) for n in (along, across, deep)]
@@ -68,7 +70,7 @@ def _terms(run, cores):
     return np.array([run["active"] / run["ranks"] * rounds, run["halo"] * rounds, 8.0 * (rounds - 1.0)])
 
 
-def fit(runs, cores):
+def fit(runs: Sequence[Mapping[str, Any]], cores: int) -> dict[str, float]:
     """Seconds of `sweep`, `halo` and `switch`, none negative, with the least relative error over the runs."""
     rows = np.array([_terms(run, cores) / run["step_s"] for run in runs])
     names, keep = ["sweep", "halo", "switch"], [0, 1, 2]
@@ -81,7 +83,7 @@ def fit(runs, cores):
     return costs | {"error": float(np.sqrt(np.mean((rows[:, keep] @ found - 1.0) ** 2)))}
 
 
-def step_time(count, shape, ranks, threads, costs):
+def step_time(count: float, shape: Sequence[float], ranks: int, threads: int, costs: Mapping[str, float]) -> float:
     """Seconds of a step of `count` particles in a block of proportions `shape` on a network; walls are left out."""
     along, section = _block(count, shape)
     halo = 2.0 * _LAYERS * section if ranks > 1 else 0.0
@@ -96,7 +98,7 @@ def _block(count, shape):
     return shape[0] * unit, shape[1] * shape[2] * unit**2
 
 
-def predict(name, count, costs, threads=8):
+def predict(name: str, count: int, costs: Mapping[str, float], threads: int = 8) -> dict[str, Any]:
     """The most ranks at which slabs still work at 0.7 of one rank's speed, and the time of a step there."""
     along, _ = _block(count, SHAPES[name])
     alone, ranks = step_time(count, SHAPES[name], 1, threads, costs), 1
@@ -116,7 +118,7 @@ def predict(name, count, costs, threads=8):
     }
 
 
-def lines(found):
+def lines(found: dict[str, Any]) -> Iterator[str]:
     """The model in words."""
     costs = found["costs"]
     yield (

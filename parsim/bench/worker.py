@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ _WARM = 5  # steps
 _CALLS = 7  # of a single sweep; the fastest counts
 
 
-def measure(order):
+def measure(order: dict[str, Any]) -> dict[str, Any]:
     """Run what the order asks for; returns the figures (dict), the same on all ranks but for times."""
     case = parse(order["case"])
     comm = Comm(repeats(case)[0])

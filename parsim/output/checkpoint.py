@@ -6,11 +6,14 @@ not show how many ranks have written it. Data sets: `case` (TOML) and `account` 
 hold so far) as text, `water/` with the kept fields, `parts/` with what bodies and others keep, each under its name.
 """
 
+from __future__ import annotations
+
 import hashlib
 import itertools
 import json
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -18,6 +21,10 @@ import numpy as np
 from parsim.errors import InputError
 from parsim.output.frames import replacing
 from parsim.particles.state import Particles, of_water, water_bytes
+
+if TYPE_CHECKING:
+    from parsim.domain.comm import Comm
+    from parsim.particles.state import Field
 
 FOLDER, SUFFIX, _PARTS = "checkpoints", ".h5", "parts"
 _KIND = b"parsim checkpoint, format 3\n"
@@ -33,11 +40,11 @@ class Broken(Exception):
 class Snapshot:
     """The state of a run on this rank: water (Particles), parts (by name dicts of arrays), account (dict)."""
 
-    def __init__(self, water, parts, account):
+    def __init__(self, water: Particles, parts: dict[str, dict[str, np.ndarray]], account: dict[str, Any]) -> None:
         self.water, self.parts, self.account = water, parts, account
 
 
-def write(path, case, snapshot, comm):
+def write(path: Path | str, case: str, snapshot: Snapshot, comm: Comm) -> None:
     """Write a snapshot; called on all ranks together, rank 0 writes. `case`: TOML text. Raises WriteError.
 
     At most one rank's water is in the memory of rank 0 beside its own.
@@ -85,7 +92,8 @@ def _put(file, name, values):
 
 def _put_parts(file, name, total, parts):
     """A data set of `total` rows that come in parts, and its checksum."""
-    digest, at, data = hashlib.sha256(), 0, None
+    data: Any = None  # made with the first part
+    digest, at = hashlib.sha256(), 0
     for part in parts:
         if data is None:
             data = file.create_dataset(name, (total, *part.shape[1:]), part.dtype)
@@ -113,7 +121,7 @@ def _digest(path):
     return digest.hexdigest()
 
 
-def verify(path):
+def verify(path: Path | str) -> None:
     """Raise Broken unless the file is what was written."""
     try:
         with open(path, "rb") as file:
@@ -141,7 +149,7 @@ class Checkpoint:
     Raises Broken.
     """
 
-    def __init__(self, path, whole=True):
+    def __init__(self, path: Path | str, whole: bool = True) -> None:
         self.path = Path(path)
         if whole:
             verify(self.path)
@@ -154,7 +162,7 @@ class Checkpoint:
                 part: {name: data[()] for name, data in kept.items()} for part, kept in file.get(_PARTS, {}).items()
             }
 
-    def snapshot(self, fields, rank, size):
+    def snapshot(self, fields: tuple[Field, ...], rank: int, size: int) -> Snapshot:
         """The share of one of `size` ranks: every rank a run of water by ids, with such `fields`, and all parts."""
         with h5py.File(self.path) as file:
             group = file["water"]
@@ -169,12 +177,12 @@ def _check(name, data):
         return
     digest, rows = hashlib.sha256(), max(1, _PIECE // max(1, data.dtype.itemsize * int(np.prod(data.shape[1:]))))
     for begin in range(0, len(data), rows):
-        digest.update(np.ascontiguousarray(data[begin : begin + rows]))
+        digest.update(np.ascontiguousarray(data[begin : begin + rows]).data)
     if data.attrs.get("sha256") != digest.hexdigest():
         raise Broken(f"the checksum of its data set {name} is wrong")
 
 
-def listed(folder):
+def listed(folder: Path | str) -> list[Path]:
     """Paths of the checkpoints in an output folder, the oldest first. Raises InputError where they cannot be seen."""
     try:
         names = os.listdir(Path(folder, FOLDER))
@@ -186,15 +194,15 @@ def listed(folder):
     return sorted((path for path in paths if path.is_file()), key=lambda path: (step_of(path), path.name))
 
 
-def step_of(path):
+def step_of(path: Path | str) -> int:
     """Step of a checkpoint, from its name; -1 when the name does not say."""
     number = Path(path).stem.rpartition("_")[2]
     return int(number) if number.isdecimal() else -1
 
 
-def newest(folder):
+def newest(folder: Path | str) -> tuple[Checkpoint | None, list[str]]:
     """The newest whole checkpoint of an output folder, or None, and a line for each broken one that is newer."""
-    broken = []
+    broken: list[str] = []
     for path in reversed(listed(folder)):
         try:
             return Checkpoint(path), broken

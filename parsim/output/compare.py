@@ -5,7 +5,9 @@ the machine. Differences of floats are counted in units of the last place (ulps)
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -31,7 +33,7 @@ class Difference:
     count: int = 1
     most: int = 0
 
-    def __str__(self):
+    def __str__(self) -> str:
         ulps = f" ({self.ulps} ulp)" if self.ulps is not None else ""
         step = f" at step {self.step}" if math.isfinite(self.step) else ""
         return f"{self.where}: {self.field}{step}, {self.item}: {self.first}{ulps}"
@@ -40,10 +42,20 @@ class Difference:
 class Ledger:
     """All differences, one entry for each field of a place."""
 
-    def __init__(self):
-        self.entries = {}
+    def __init__(self) -> None:
+        self.entries: dict[tuple[str, str], Difference] = {}
 
-    def add(self, where, field, step, item, first, ulps=None, count=1, most=0):
+    def add(
+        self,
+        where: str,
+        field: str,
+        step: float,
+        item: str,
+        first: str,
+        ulps: int | None = None,
+        count: int = 1,
+        most: int = 0,
+    ) -> None:
         """Note ``count`` differing values; the first one told of a field stays its first."""
         known = self.entries.get((where, field))
         if known is None:
@@ -52,7 +64,15 @@ class Ledger:
             known.count += count
             known.most = max(known.most, most)
 
-    def arrays(self, where, field, a, b, step, item):
+    def arrays(
+        self,
+        where: str,
+        field: str,
+        a: np.ndarray,
+        b: np.ndarray,
+        step: Callable[[int], float],
+        item: Callable[[int], str],
+    ) -> None:
         """Compare two arrays; ``step(row)`` and ``item(row)`` tell of a row what its step is and what it is about."""
         if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
             self.add(where, field, step(0), "shape", f"{a.dtype}{a.shape} and {b.dtype}{b.shape}")
@@ -67,19 +87,19 @@ class Ledger:
             values = f"{a[first].item()!r} and {b[first].item()!r}"
             self.add(where, field, step(first[0]), name, values, told, len(places), most)
 
-    def first(self):
+    def first(self) -> Difference:
         """The difference at the earliest step."""
         return min(self.entries.values(), key=lambda entry: entry.step)
 
 
-def different(a, b):
+def different(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Where two arrays of one shape differ in their bits: a NaN equals the same NaN, 0.0 differs from -0.0."""
     if a.dtype == np.float64 == b.dtype:
         return _bits(a) != _bits(b)
     return a != b
 
 
-def ulps(a, b):
+def ulps(a: np.ndarray, b: np.ndarray) -> np.ndarray | None:
     """How many float64 values lie between each of ``a`` and ``b``, uint64; None for other types or where NaN meets."""
     if a.dtype != np.float64 or np.isnan(a).any() or np.isnan(b).any():
         return None
@@ -177,7 +197,7 @@ def _compare_tables(ledger, name, a, b):
         ledger.arrays(where, column, *(table[column][: min(rows)] for table in (a, b)), step, item)
 
 
-def compare_outputs(first, second) -> int:
+def compare_outputs(first: Path | str, second: Path | str) -> int:
     """Print the first difference and a summary by field. Returns 0 when the bits are equal, 3 when they differ.
 
     Raises InputError when a folder is no output or there is nothing in it to compare.

@@ -1,9 +1,12 @@
 """The output folder: made or opened again, locked, with room on its disk, free of what a killed job has left."""
 
+from __future__ import annotations
+
 import json
 import shutil
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 from parsim.case.estimate import disk, estimate
 from parsim.errors import InputError, WriteError
@@ -11,6 +14,10 @@ from parsim.output import checkpoint, lock
 from parsim.output.frames import write_text
 from parsim.output.reader import MARK, is_output
 from parsim.output.reader import open as open_run
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.domain.comm import Comm
 
 # what a run and its report write, in the order in which it is removed: what a killed job leaves of it must not be taken
 # for another run's
@@ -33,31 +40,31 @@ class Folder:
     Attribute path. All methods but `release` raise InputError or WriteError.
     """
 
-    def __init__(self, path, comm):
+    def __init__(self, path: Path | str, comm: Comm) -> None:
         self.path, self.comm = Path(path), comm
         self.lock = lock.Lock(self.path)
 
-    def make(self, case, source, force):
+    def make(self, case: Case, source: Path | str, force: bool) -> None:
         """A new folder for a case from the file `source`; `force`: in place of an earlier output."""
         self._together(self._make, case, Path(source), force)
 
-    def take(self):
+    def take(self) -> None:
         """Lock an existing output folder, so that what is found in it stays as it is."""
         self._together(self._take)
 
-    def reopen(self, case, account=None):
+    def reopen(self, case: Case, account: dict[str, Any] | None = None) -> None:
         """Go on in a folder taken before, as it was at the checkpoint with this account; None: from the beginning."""
         self._together(self._reopen, case, account)
 
-    def release(self):
+    def release(self) -> None:
         """Let other jobs have the folder."""
         if self.comm.rank == 0:
             self.lock.release()
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.release()
 
     def _together(self, work, *arguments):

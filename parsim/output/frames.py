@@ -5,6 +5,8 @@ under a temporary name, flushed to the disk and renamed, so that a file that is 
 and stored plainly: they hardly compress (a fifth smaller for twenty times the time); only the connectivity is packed.
 """
 
+from __future__ import annotations
+
 import errno
 import json
 import math
@@ -13,11 +15,18 @@ import re
 import shutil
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 import h5py
 import numpy as np
 
 from parsim.errors import WriteError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from types import TracebackType
+
+    from numpy.typing import ArrayLike, DTypeLike
 
 VERSION = (2, 3)
 TOPOLOGIES = ("Vertices", "Lines", "Polygons", "Strips")
@@ -29,7 +38,7 @@ NO_CELLS = np.zeros(0, np.int64), np.zeros(1, np.int64)
 
 
 @contextmanager
-def replacing(path, size=0):
+def replacing(path: Path | str, size: float = 0) -> Iterator[Path]:
     """Give a temporary name beside ``path``; on success flush it to the disk and rename it, on failure remove it.
 
     A disk without room for ``size`` bytes is refused beforehand, for HDF5 does not bear one that fills up. Raises
@@ -74,13 +83,13 @@ def _flush(path):
         os.close(descriptor)
 
 
-def write_text(path, text):
+def write_text(path: Path | str, text: str) -> None:
     """Write ``text`` to ``path`` by way of a temporary name. Raises WriteError."""
     with replacing(path) as part:
         part.write_text(text, encoding="utf-8")
 
 
-def specification(fields):
+def specification(fields: Mapping[str, np.ndarray]) -> dict[str, tuple[np.dtype, tuple[int, ...]]]:
     """The (dtype, shape of one row) of each array in ``fields``: what :class:`WaterFrame` wants to know beforehand."""
     return {name: (values.dtype, values.shape[1:]) for name, values in fields.items()}
 
@@ -93,10 +102,17 @@ class WaterFrame:
     Raises WriteError when the file cannot be written, ValueError when the parts do not add up to ``total``.
     """
 
-    def __init__(self, path, total, fields, time, step):
+    def __init__(
+        self,
+        path: Path | str,
+        total: int,
+        fields: Mapping[str, tuple[DTypeLike, tuple[int, ...]]],
+        time: float,
+        step: int,
+    ) -> None:
         self.total, self.filled = int(total), 0
         row = 40 + sum(np.dtype(dtype).itemsize * math.prod(shape) for dtype, shape in fields.values())
-        self._guard = replacing(path, _OVERHEAD + row * self.total)
+        self._guard: Any = replacing(path, _OVERHEAD + row * self.total)  # None once it is left
         part = self._guard.__enter__()
         with self._cleaned():
             self._file = h5py.File(part, "w")
@@ -108,7 +124,7 @@ class WaterFrame:
                 name: group.create_dataset(name, (self.total, *shape), dtype) for name, (dtype, shape) in fields.items()
             }
 
-    def append(self, points, fields):
+    def append(self, points: np.ndarray, fields: Mapping[str, np.ndarray]) -> None:
         """Add ``points`` (m, 3) in metres and the ``fields`` of the same m points."""
         rows = slice(self.filled, self.filled + len(points))
         with self._cleaned():
@@ -119,7 +135,7 @@ class WaterFrame:
                 self._fields[name][rows] = values
         self.filled = rows.stop
 
-    def close(self):
+    def close(self) -> None:
         """Complete the file: flush it and give it its name."""
         with self._cleaned():
             if self.filled != self.total:
@@ -127,10 +143,12 @@ class WaterFrame:
             self._file.close()
         self._guard.__exit__(None, None, None)
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if kind is None:
             self.close()
         elif self._guard is not None:
@@ -155,7 +173,7 @@ class WaterFrame:
             guard.__exit__(type(error), error, error.__traceback__)
 
 
-def write_water(path, points, fields, time, step):
+def write_water(path: Path | str, points: np.ndarray, fields: Mapping[str, np.ndarray], time: float, step: int) -> None:
     """Write one frame of water: ``points`` (n, 3) in m, ``fields`` name -> array (n,) or (n, k).
 
     Usual fields: id int64, velocity (n, 3) m/s, pressure Pa, class uint8 (0 internal, 1 near the surface, 2 surface,
@@ -168,7 +186,15 @@ def write_water(path, points, fields, time, step):
             frame.append(points[rows], {name: values[rows] for name, values in fields.items()})
 
 
-def write_bodies(path, points, quads, body, fields, time, step):
+def write_bodies(
+    path: Path | str,
+    points: np.ndarray,
+    quads: ArrayLike,
+    body: ArrayLike,
+    fields: Mapping[str, np.ndarray],
+    time: float,
+    step: int,
+) -> None:
     """Write the closed surfaces of all bodies.
 
     ``points`` (m, 3) in m, ``quads`` (k, 4) indices into them, counter-clockwise seen from outside, ``body`` (k,) the
@@ -207,13 +233,13 @@ def _topology(group, connectivity, offsets):
     group.create_dataset("Offsets", data=offsets, **options)
 
 
-def write_index(path, entries):
+def write_index(path: Path | str, entries: Iterable[tuple[str, float]]) -> None:
     """Write the ``.series`` index that ParaView opens: ``entries`` are (file name, time in s). Raises WriteError."""
     files = [{"name": name, "time": float(time)} for name, time in entries]
     write_text(path, json.dumps({"file-series-version": "1.0", "files": files}, indent=1) + "\n")
 
 
-def read_index(path):
+def read_index(path: Path | str) -> list[tuple[str, float]]:
     """The (file name, time in s) pairs of a ``.series`` index; none when there is no such file yet."""
     path = Path(path)
     if not path.exists():

@@ -7,6 +7,7 @@ import platform
 import time
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TextIO
 
 from parsim.errors import InputError, RunError, WriteError
 
@@ -25,11 +26,12 @@ class Lock:
     sign: a job that goes on where a lost machine has left off must not fail for being quick.
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder: Path | str) -> None:
         self.path = Path(folder, NAME)
-        self._file, self._text, self._beaten = None, "", 0.0
+        self._file: TextIO | None = None
+        self._text, self._beaten = "", 0.0
 
-    def take(self):
+    def take(self) -> None:
         """Take the lock, once that of another machine has shown whether it lives.
 
         Raises InputError, which says who has it, or WriteError.
@@ -72,11 +74,11 @@ class Lock:
         self._file.flush()
 
     @property
-    def mine(self):
+    def mine(self) -> bool:
         """Whether this process has the lock."""
         return self._file is not None
 
-    def beat(self):
+    def beat(self) -> None:
         """Give a sign of life, now and then. Raises RunError where another job has taken this one for dead."""
         now = time.monotonic()
         if not self._file or now - self._beaten < BEAT:
@@ -92,7 +94,7 @@ class Lock:
             )
         os.utime(self._file.fileno())
 
-    def release(self):
+    def release(self) -> None:
         """Give the folder free."""
         if self._file:
             self.path.unlink(missing_ok=True)
@@ -100,7 +102,7 @@ class Lock:
             self._file = None
 
 
-def held(folder):
+def held(folder: Path | str) -> bool:
     """Whether a job writes this folder now, as far as can be seen from here."""
     path = Path(folder, NAME)
     try:

@@ -1,11 +1,14 @@
 """The public reader of an output folder: frames, series and case as numpy arrays, read when asked for."""
 
+from __future__ import annotations
+
 import csv
 import json
 import operator
 import tomllib
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -17,7 +20,7 @@ MARK = "run.json"  # the first file that a run writes
 KINDS = ("water", "bodies")  # of frames
 
 
-def open(folder):
+def open(folder: Path | str) -> Run:
     """Open the output folder of a run and return a :class:`Run`.
 
     Raises InputError when the folder is not one, naming the nearest that is.
@@ -28,7 +31,7 @@ def open(folder):
     return Run(folder)
 
 
-def is_output(folder):
+def is_output(folder: Path) -> bool:
     """Whether a run has written the folder."""
     return (folder / MARK).is_file() or any(folder.glob("checkpoints/*.h5"))
 
@@ -53,22 +56,22 @@ class Run:
     >>> energy["time"], energy["total"]
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder: Path | str) -> None:
         self.folder = Path(folder)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         frames = ", ".join(f"{self._held(kind)} of {kind}" for kind in KINDS)
         status, series = self.info.get("status", "status unknown"), ", ".join(self.series_names) or "none"
         return f"<parsim run in {self.folder}: {status}; frames: {frames}; series: {series}>"
 
     @cached_property
-    def case(self):
+    def case(self) -> dict[str, Any]:
         """The completed case (case.toml) as a dict; empty when the run was stopped before writing it."""
         path = self.folder / "case.toml"
         return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
     @cached_property
-    def info(self):
+    def info(self) -> dict[str, Any]:
         """What the run says of itself (run.json): status, versions, ranks, steps, phases, rates, warnings.
 
         Empty where that cannot be read."""
@@ -79,20 +82,20 @@ class Run:
         return info if isinstance(info, dict) else {}
 
     @cached_property
-    def body_names(self):
+    def body_names(self) -> list[str]:
         """Names of the bodies in the order of every array over bodies."""
         return [body["name"] for body in self.case.get("bodies", [])]
 
     @cached_property
-    def series_names(self):
+    def series_names(self) -> list[str]:
         """Names of the series there are, e.g. ["bodies", "counts", "energy"]."""
         return sorted(path.stem for path in (self.folder / "series").glob("*.csv"))
 
-    def times(self, kind="water"):
+    def times(self, kind: str = "water") -> np.ndarray:
         """Times (frames,) in s of the frames of ``kind``, "water" or "bodies". Raises InputError for another kind."""
         return np.array([time for _, time in self._frames(kind)], float)
 
-    def nearest(self, time, kind="water"):
+    def nearest(self, time: float, kind: str = "water") -> int:
         """Index of the frame nearest to ``time`` (s). Raises InputError when there is no frame, or no such kind."""
         times = self.times(kind)
         if not isinstance(time, int | float | np.number):
@@ -101,7 +104,7 @@ class Run:
             raise InputError(f"OUT = {self.folder}: holds no frames of {kind}")
         return int(np.argmin(np.abs(times - time)))
 
-    def water(self, frame):
+    def water(self, frame: int) -> dict[str, Any]:
         """One frame of water, as a dict; -1 is the last. Raises InputError for a frame there is not.
 
         time (s), step; position (n, 3) m, id (n,), velocity (n, 3) m/s, pressure (n,) Pa, class (n,) with 0 internal,
@@ -111,7 +114,7 @@ class Run:
             root = file["VTKHDF"]
             return {**_common(root), "position": root["Points"][:], **_arrays(root["PointData"])}
 
-    def bodies(self, frame):
+    def bodies(self, frame: int) -> dict[str, Any]:
         """One frame of bodies, as a dict; -1 is the last. Raises InputError for a frame there is not.
 
         time (s), step; points (m, 3) m and quads (k, 4) of the surfaces, body (k,) of each face; per body position
@@ -123,7 +126,7 @@ class Run:
             quads = root["Polygons/Connectivity"][:].reshape(-1, 4)
             return {**_common(root), "points": root["Points"][:], "quads": quads, **_arrays(root["CellData"])}
 
-    def series(self, name):
+    def series(self, name: str) -> dict[str, np.ndarray]:
         """One series as a dict of columns (rows,): int64, float64 or text. Units are in :meth:`units`.
 
         A last row that a stopped run left unfinished is not read. Raises InputError for a name there is not.
@@ -132,7 +135,7 @@ class Run:
         columns = zip(*rows, strict=True) if rows else [()] * len(titles)
         return {title: _typed(values) for title, values in zip(titles, columns, strict=True)}
 
-    def units(self, name):
+    def units(self, name: str) -> dict[str, str]:
         """The unit of each column of a series, as a dict of texts. Raises InputError for a name there is not."""
         units, titles, _ = self._table(name)
         return dict(zip(titles, units, strict=True))

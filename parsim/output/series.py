@@ -5,6 +5,7 @@ import io
 import itertools
 import math
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 from parsim.errors import WriteError
@@ -20,7 +21,7 @@ class Table:
     resumed run leaves the file that an uninterrupted one would. All methods raise WriteError.
     """
 
-    def __init__(self, path, units, resume=None):
+    def __init__(self, path: Path | str, units: Mapping[str, str], resume: int | None = None) -> None:
         self.path, self.columns = Path(path), list(units)
         self._waiting = io.StringIO()
         self._writer = csv.writer(self._waiting, lineterminator="\n")
@@ -29,24 +30,24 @@ class Table:
         write_text(self.path, "\n".join([*titles, *kept]) + "\n")
         self._file = self._guarded(lambda: open(self.path, "a", encoding="utf-8"))
 
-    def row(self, *values):
+    def row(self, *values: object) -> None:
         """Add one row, values in the order of the columns."""
         if len(values) != len(self.columns):
             raise ValueError(f"{self.path.name}: {len(values)} values for {len(self.columns)} columns")
         self._writer.writerow(values)
 
-    def flush(self):
+    def flush(self) -> None:
         """Write the waiting rows."""
         self._guarded(lambda: (self._file.write(self._waiting.getvalue()), self._file.flush()))
         self._waiting.seek(0)
         self._waiting.truncate()
 
-    def secure(self):
+    def secure(self) -> None:
         """Write the waiting rows and see them on the disk."""
         self.flush()
         self._guarded(lambda: os.fsync(self._file.fileno()))
 
-    def close(self):
+    def close(self) -> None:
         """Write the waiting rows and close the file."""
         self.flush()
         self._guarded(self._file.close)
@@ -58,7 +59,7 @@ class Table:
             raise WriteError(self.path, error.strerror or error) from error
 
 
-def next_multiple(time, every):
+def next_multiple(time: float, every: float) -> float:
     """The next multiple of `every` after `time`, s; t = 0 is never passed over."""
     due = (math.floor(time / every + 1e-9) + 1.0) * every
     return due if time >= 0 else min(due, 0.0)

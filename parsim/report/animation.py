@@ -1,8 +1,11 @@
 """A short animation of all frames: MP4 where imageio has an encoder, else GIF."""
 
+from __future__ import annotations
+
 import io
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -12,21 +15,27 @@ from parsim.report import plane
 from parsim.report.pictures import show
 from parsim.report.scene import OBLIQUE, load
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from parsim.output.reader import Run
+    from parsim.report.pictures import Gallery
+
 MOST_FRAMES, SECONDS, SLOWEST, FASTEST = 100, 6.0, 5, 20
 DOTS, COLOURS = 90, 96
 
 
-def chosen(count):
+def chosen(count: int) -> list[int]:
     """Which of ``count`` frames are shown: all, or as evenly as may be at most MOST_FRAMES."""
     return sorted(set(np.linspace(0, count - 1, min(count, MOST_FRAMES)).round().astype(int).tolist()))
 
 
-def rate(count):
+def rate(count: int) -> int:
     """Pictures per second."""
     return int(np.clip(count / SECONDS, SLOWEST, FASTEST))
 
 
-def animate(run, gallery, frames):
+def animate(run: Run, gallery: Gallery, frames: Sequence[int]) -> tuple[bytes, str]:
     """The animation of ``frames``: (bytes, "mp4" or "gif")."""
     # colours must not jump: 2D pictures share the scale of the run
     draw = _spatial if run.case["dimensions"] == 3 else _plane(run, frames)

@@ -1,6 +1,9 @@
 """Put the report together: choose the moments, draw, and write OUT/report."""
 
+from __future__ import annotations
+
 import io
+from typing import TYPE_CHECKING
 
 from parsim.output.frames import replacing, write_text
 from parsim.output.reader import open as open_run
@@ -9,6 +12,13 @@ from parsim.report.measures import asked, moments
 from parsim.report.page import listing, page, picture
 from parsim.report.pictures import Gallery, wanted
 from parsim.report.sections import SECTIONS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
 
 DOTS = 110
 
@@ -19,18 +29,18 @@ class Page:
     Every picture is kept as a file in OUT/report, `folder`, and given to the page.
     """
 
-    def __init__(self, run, vtk=True):
+    def __init__(self, run: Run, vtk: bool = True) -> None:
         self.run, self.folder, times = run, run.folder / "report", run.times("water")
         self.frames, self.film = moments(times, asked(run, "snapshots", ())), chosen(len(times)) if len(times) else []
         self.gallery = Gallery(run, wanted(run, self.frames, self.film), vtk)
 
-    def keep(self, name, suffix, data, alternative, caption):
+    def keep(self, name: str, suffix: str, data: bytes, alternative: str, caption: str) -> str:
         """Write one file and return its place in the page."""
         with replacing(self.folder / f"{name}.{suffix}") as part:
             part.write_bytes(data)
         return picture(data, suffix, alternative, caption)
 
-    def figure(self, name, drawn, alternative, caption):
+    def figure(self, name: str, drawn: Figure | None, alternative: str, caption: str) -> str:
         """Keep a figure as PNG; nothing for None."""
         if drawn is None:
             return ""
@@ -39,7 +49,7 @@ class Page:
         return self.keep(name, "png", target.getvalue(), alternative, caption)
 
 
-def build(out, vtk=True):
+def build(out: Path | str, vtk: bool = True) -> Path:
     """Write OUT/report/index.html and the pictures beside it; returns the page's path. ``vtk`` allows pyvista.
 
     Raises InputError when ``out`` is no output folder, WriteError when the report cannot be written.
@@ -52,6 +62,6 @@ def build(out, vtk=True):
     return path
 
 
-def summary(run):
+def summary(run: Run) -> list[str]:
     """A few lines that say how the run went."""
     return [line for each in SECTIONS if hasattr(each, "lines") for line in each.lines(run)]

@@ -1,15 +1,25 @@
 """What several sections need of a run: columns of its series, what its case wants told, and published numbers."""
 
+from __future__ import annotations
+
 import csv
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import numpy as np
+
+    from parsim.output.reader import Run
 
 
-def asked(run, key, default=None):
+def asked(run: Run, key: str, default: Any = None) -> Any:
     """What the case of a run says under `report`, the default where it says nothing."""
     return run.case.get("report", {}).get(key) or default
 
 
-def columns(run, name):
+def columns(run: Run, name: str) -> dict[str, np.ndarray] | None:
     """A series as a dict of columns, None where the run has not written it or it has no rows."""
     if name not in run.series_names:
         return None
@@ -17,12 +27,12 @@ def columns(run, name):
     return series if len(series["step"]) else None
 
 
-def percent(share):
+def percent(share: float) -> str:
     """A share with as many digits as show it."""
     return f"{100 * share:.2g} %"
 
 
-def moments(times, wanted):
+def moments(times: np.ndarray, wanted: Iterable[float]) -> list[int]:
     """Frames nearest to the ``wanted`` times that the run has reached; the thirds of the run if there are none."""
     if not len(times):
         return []
@@ -46,25 +56,34 @@ class Published:
     source: str
 
 
-def published(run):
+def published(run: Run) -> list[Published]:
     """The rows of reference.csv that are about this case."""
     path = run.folder / "reference.csv"
     if not path.is_file():
         return []
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    numbers = ("low", "high", "model", "time")
     return [
         Published(
-            **{key: row[key] for key in ("block", "quantity", "unit", "source")},
-            **{key: float(row[key]) if row[key] else None for key in numbers},
+            block=row["block"],
+            quantity=row["quantity"],
+            low=_number(row["low"]),
+            high=_number(row["high"]),
+            model=_number(row["model"]),
+            unit=row["unit"],
+            time=_number(row["time"]),
+            source=row["source"],
         )
         for row in rows
         if row["case"] == run.info.get("case_name")
     ]
 
 
-def verdict(value, number):
+def _number(text):
+    return float(text) if text else None
+
+
+def verdict(value: float | None, number: Published) -> str:
     """In words, where a measured value lies against the experiments."""
     if value is None or number.low is None or number.high is None:
         return "not compared"

@@ -2,6 +2,7 @@
 
 import base64
 import html
+from collections.abc import Iterable, Sequence
 
 STYLE = """
 :root { color-scheme: light; }
@@ -24,7 +25,7 @@ pre { background: #f5f7fa; padding: .8rem; font-size: .78rem; overflow-x: auto; 
 MEDIA = {"png": "image/png", "gif": "image/gif", "mp4": "video/mp4"}
 
 
-def text(value):
+def text(value: object) -> str:
     """A value as safe HTML: numbers short, None as a dash."""
     if value is None:
         return "&ndash;"
@@ -33,13 +34,13 @@ def text(value):
     return html.escape(str(value))
 
 
-def section(title, *parts):
+def section(title: str, *parts: str) -> str:
     """A titled section of the parts that are not empty; nothing when all are."""
-    parts = [part for part in parts if part]
-    return "\n".join([f"<h2>{text(title)}</h2>", *parts]) if parts else ""
+    filled = [part for part in parts if part]
+    return "\n".join([f"<h2>{text(title)}</h2>", *filled]) if filled else ""
 
 
-def table(titles, rows):
+def table(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """A table whose columns of numbers stand to the right; nothing without rows."""
     if not rows:
         return ""
@@ -57,13 +58,13 @@ def table(titles, rows):
     return f"<table><thead>{line('th', titles)}</thead><tbody>\n{body}\n</tbody></table>"
 
 
-def listing(items, kind=""):
+def listing(items: Sequence[object], kind: str = "") -> str:
     """A list of lines; nothing without items."""
     lines = "\n".join(f"<li>{text(item)}</li>" for item in items)
     return f'<ul class="{kind}">{lines}</ul>' if items else ""
 
 
-def picture(data, suffix, alternative, caption):
+def picture(data: bytes, suffix: str, alternative: str, caption: str) -> str:
     """A picture or film held in the page, ``alternative`` for those who cannot see it; nothing without data."""
     if not data:
         return ""
@@ -75,12 +76,12 @@ def picture(data, suffix, alternative, caption):
     return f"<figure>{shown}<figcaption>{text(caption)}</figcaption></figure>"
 
 
-def preformatted(words):
+def preformatted(words: str) -> str:
     """Text as it stands; nothing without it."""
     return f"<pre>{html.escape(words)}</pre>" if words else ""
 
 
-def page(title, lead, sections):
+def page(title: str, lead: str, sections: Iterable[str]) -> str:
     """The whole page."""
     body = "\n".join(part for part in sections if part)
     return f"""<!DOCTYPE html>

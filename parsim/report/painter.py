@@ -4,10 +4,17 @@ The water is drawn in screen space (van der Laan, Green & Sainz 2009): particles
 map, the map is smoothed where it is continuous, and its slope and thickness give shade and tint.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from parsim.report.raster import LIGHT, Canvas, faces, lay, reduced, resampled
 from parsim.report.scene import BOX_FACES, box_corners
+
+if TYPE_CHECKING:
+    from parsim.report.scene import Scene, View
 
 SHALLOW, DEEP = np.array([0.56, 0.80, 0.95], np.float32), np.array([0.07, 0.33, 0.60], np.float32)
 GATE_COLOUR, GATE_OPACITY = np.array([[0.42, 0.44, 0.47]]), 0.6
@@ -17,7 +24,9 @@ CELLS_PER_SPACING = 3
 FAR = 1e9
 
 
-def paint(scene, view, width=1200, oversampling=2):
+def paint(
+    scene: Scene, view: View, width: int = 1200, oversampling: int = 2
+) -> tuple[np.ndarray, tuple[float, float, float, float]]:
     """The picture as RGBA (rows, width, 4) in 0..1 and its extent (left, right, bottom, top) in m."""
     extent = view.extent(scene)
     pitch = (extent[1] - extent[0]) / (width * oversampling)
@@ -45,13 +54,15 @@ def _gate(canvas, view, scene):
 def _water(canvas, view, scene, solid):
     """Depth of the water in front of the ``solid`` depth (inf elsewhere), where it is, its colour and opacity there."""
     pitch, extent = scene.spacing / CELLS_PER_SPACING, canvas.extent
-    shape = tuple(int(np.ceil((extent[i + 1] - extent[i]) / pitch)) + 1 for i in (2, 0))
-    coarse = Canvas((extent[0], extent[0] + shape[1] * pitch, extent[3] - shape[0] * pitch, extent[3]), shape)
+    rows, across = (int(np.ceil((extent[i + 1] - extent[i]) / pitch)) + 1 for i in (2, 0))
+    coarse = Canvas((extent[0], extent[0] + across * pitch, extent[3] - rows * pitch, extent[3]), (rows, across))
     front, thickness = _splatted(coarse, view, scene)
     covered = np.isfinite(front)
     front = _smoothed(np.where(covered, front, FAR).astype(np.float32), 2 * scene.spacing)
     layers = [np.where(covered, front, 0), covered, thickness, *_shaded(front, covered, view, pitch)]
-    front, cover, thickness, bright, shine = (resampled(coarse, canvas, np.float32(layer)) for layer in layers)
+    front, cover, thickness, bright, shine = (
+        resampled(coarse, canvas, np.asarray(layer, np.float32)) for layer in layers
+    )
     depth = np.where(cover > 0.5, front / np.maximum(cover, 0.5), np.inf)
     where = depth < solid
     seen = np.minimum(thickness[where], solid[where] - depth[where])

@@ -1,5 +1,7 @@
 """Pictures of many frames, by pyvista where it works, else by our own painter, and what is written over them."""
 
+from __future__ import annotations
+
 import importlib.util
 import json
 import os
@@ -8,6 +10,7 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib.patheffects as effects
 import numpy as np
@@ -16,6 +19,14 @@ from matplotlib.image import imread
 
 from parsim.report.painter import paint
 from parsim.report.scene import BOX_EDGES, FRONT, OBLIQUE, TOP, VIEWS, box_corners, load
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from matplotlib.axes import Axes
+
+    from parsim.output.reader import Run
+    from parsim.report.scene import Scene, View
 
 START_LIMIT, PICTURE_LIMIT = 60.0, 10.0  # s; a software renderer takes 0.3 s a picture
 INK, FAINT = "#1f2933", "#9aa5b1"
@@ -36,13 +47,13 @@ SNAPSHOT, ANIMATION = Quality(1000, 2), Quality(720, 1)
 class Gallery:
     """Raw pictures of a run: ``wanted`` maps (frame, view name) to a quality; ``method`` says who draws them."""
 
-    def __init__(self, run, wanted, vtk=True):
+    def __init__(self, run: Run, wanted: Mapping[tuple[int, str], Quality], vtk: bool = True) -> None:
         self.run, self.wanted = run, wanted
         self.images = _by_vtk(run, wanted) if vtk and wanted else {}
         drawers = ["pyvista"] * bool(self.images) + ["our own painter"] * (len(self.images) < len(wanted))
         self.method = " and ".join(drawers) or "matplotlib"
 
-    def picture(self, scene, frame, view):
+    def picture(self, scene: Scene, frame: int, view: View) -> tuple[np.ndarray, tuple[float, float, float, float]]:
         """The picture of one frame, RGBA (rows, columns, 4) in 0..1, painted now when VTK has not; its extent in m."""
         image = self.images.get((frame, view.name))
         if image is not None:
@@ -84,7 +95,7 @@ def _environment():
     return None
 
 
-def show(axes, gallery, scene, frame, view, labels=True):
+def show(axes: Axes, gallery: Gallery, scene: Scene, frame: int, view: View, labels: bool = True) -> None:
     """Put one picture with tank, names and gate on ``axes``, whose units are then metres of the picture."""
     image, extent = gallery.picture(scene, frame, view)
     corners = view.project(box_corners(*scene.tank))
@@ -119,7 +130,7 @@ def _names(axes, scene, view):
     """Names of the bodies: on them from above, in a row over the water from the front."""
     there = np.unique(scene.body)  # what has left the box has no surface
     across, up, _ = view.project(scene.position if view is FRONT else _tops(scene, there))
-    stacked = []
+    stacked: list[float] = []
     for body in there[np.argsort(across[there], kind="stable")]:
         place, level = up[body], 0
         if view is FRONT:
@@ -160,7 +171,7 @@ def _ruler(axes, scene, view):
         axes.text(x + 0.004, y - 0.004, f"{mark:.1f} m", fontsize=7, color=INK, ha="left", va="top", zorder=4)
 
 
-def snapshot(gallery, frame, labels=True):
+def snapshot(gallery: Gallery, frame: int, labels: bool = True) -> Figure:
     """A figure of one frame: oblique view above, front and top view below."""
     scene = load(gallery.run, frame)
     sizes = [view.extent(scene) for view in (OBLIQUE, FRONT, TOP)]
@@ -172,7 +183,7 @@ def snapshot(gallery, frame, labels=True):
     return figure
 
 
-def wanted(run, snapshots, animated):
+def wanted(run: Run, snapshots: Iterable[int], animated: Iterable[int]) -> dict[tuple[int, str], Quality]:
     """What a gallery needs for snapshots of some frames and an animation of others; nothing in two dimensions."""
     if run.case.get("dimensions") != 3:
         return {}

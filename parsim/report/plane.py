@@ -1,15 +1,24 @@
 """Pictures of two-dimensional runs: particles coloured by pressure and by speed, bodies as outlines."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from parsim.report.scene import load
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from parsim.output.reader import Run
+
 WIDTH = 9.0  # inches
 
 
-def snapshot(run, frame, kinds=("pressure", "speed"), top=None):
+def snapshot(run: Run, frame: int, kinds: Sequence[str] = ("pressure", "speed"), top: float | None = None) -> Figure:
     """A figure of one frame, one picture for each of ``kinds``; ``top`` ends the colour scale, by default its own."""
     scene, water = load(run, frame), run.water(frame)
     low, high = scene.tank
@@ -35,7 +44,7 @@ def snapshot(run, frame, kinds=("pressure", "speed"), top=None):
     return drawn
 
 
-def scale(water, kind):
+def scale(water: Mapping[str, Any], kind: str) -> float:
     """A value that all but the most extreme particles stay below."""
     values, _ = _coloured(water, kind)
     return max(np.nanpercentile(values, 99.5), 1e-12) if len(values) else 1.0

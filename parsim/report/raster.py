@@ -1,6 +1,13 @@
 """A canvas of pixels with depth: filling flat faces, laying translucent colours, resampling."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
+
+if TYPE_CHECKING:
+    from parsim.report.scene import View
 
 LIGHT = np.array([-0.35, -0.55, 0.75]) / np.linalg.norm([-0.35, -0.55, 0.75])
 
@@ -11,34 +18,36 @@ class Canvas:
     ``pen`` is the width in m of the dark lines along the edges of faces.
     """
 
-    def __init__(self, extent, shape, pen=0.0):
+    def __init__(self, extent: tuple[float, float, float, float], shape: tuple[int, int], pen: float = 0.0) -> None:
         self.extent, self.shape, self.pen = extent, shape, pen
         self.pitch = (extent[1] - extent[0]) / shape[1]
         self.across = extent[0] + (np.arange(shape[1], dtype=np.float32) + np.float32(0.5)) * self.pitch
         self.up = extent[3] - (np.arange(shape[0], dtype=np.float32) + np.float32(0.5)) * self.pitch
 
-    def pixel(self, across, up):
+    def pixel(self, across: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Row and column (n,) of the pixels that points of the picture fall on."""
         row = ((self.extent[3] - up) / self.pitch).astype(np.int64)
         column = ((across - self.extent[0]) / self.pitch).astype(np.int64)
         return np.clip(row, 0, self.shape[0] - 1), np.clip(column, 0, self.shape[1] - 1)
 
 
-def lay(picture, where, colour, opacity):
+def lay(picture: np.ndarray, where: np.ndarray, colour: np.ndarray, opacity: np.ndarray | float) -> None:
     """Lay ``colour`` (k, 3) of ``opacity`` (k,), or one for all, over the k pixels ``where`` of premultiplied RGBA."""
-    opacity = np.broadcast_to(np.float32(opacity), len(colour))[:, None]
+    cover = np.broadcast_to(np.asarray(opacity, np.float32), len(colour))[:, None]
     below = picture[where]
-    picture[where] = np.hstack([colour * opacity, opacity]) + below * (1 - opacity)
+    picture[where] = np.hstack([colour * cover, cover]) + below * (1 - cover)
 
 
-def reduced(picture, factor):
+def reduced(picture: np.ndarray, factor: int) -> np.ndarray:
     """Average ``factor`` x ``factor`` pixels and divide the colour by its opacity."""
-    total = sum(picture[i::factor, j::factor] for i in range(factor) for j in range(factor)) / factor**2
+    total: Any = sum(picture[i::factor, j::factor] for i in range(factor) for j in range(factor)) / factor**2
     total[..., :3] /= np.maximum(total[..., 3:], 1e-6)
     return np.clip(total, 0, 1)
 
 
-def faces(canvas, view, points, quads, colours):
+def faces(
+    canvas: Canvas, view: View, points: np.ndarray, quads: np.ndarray, colours: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Depth (inf where there is nothing) and colour of opaque faces with dark edges."""
     depth, colour = np.full(canvas.shape, np.inf, np.float32), np.zeros((*canvas.shape, 3), np.float32)
     across, up, away = view.project(points)
@@ -76,11 +85,11 @@ def _fill(canvas, depth, colour, corners, shade):
     colour[window] = np.where(drawn[..., None], shade * dark[..., None], colour[window])
 
 
-def resampled(source, target, values):
+def resampled(source: Canvas, target: Canvas, values: np.ndarray) -> np.ndarray:
     """Bilinear values of one canvas at the pixels of another."""
     row = np.clip((source.up[0] - target.up) / source.pitch, 0, source.shape[0] - 1.001)
     column = np.clip((target.across - source.across[0]) / source.pitch, 0, source.shape[1] - 1.001)
     i, j = row.astype(int), column.astype(int)
-    down, right = np.float32(row - i)[:, None], np.float32(column - j)
+    down, right = (row - i).astype(np.float32)[:, None], (column - j).astype(np.float32)
     lines = values[i] * (1 - down) + values[i + 1] * down
     return lines[:, j] * (1 - right) + lines[:, j + 1] * right

@@ -1,16 +1,24 @@
 """What a picture shows, for any painter: tank, gate, blocks and water at one time, and the views on them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from parsim.output.reader import Run
 
 BODY_COLOURS = ((0.930, 0.690, 0.270), (0.878, 0.482, 0.224), (0.710, 0.251, 0.184), (0.478, 0.180, 0.180))
 BOX_FACES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 BOX_EDGES = np.array([[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]])
 
 
-def box_corners(low, high):
+def box_corners(low: Sequence[float] | np.ndarray, high: Sequence[float] | np.ndarray) -> np.ndarray:
     """The eight corners (8, 3) of a box, x fastest; :data:`BOX_FACES` and :data:`BOX_EDGES` index them."""
     return np.array(
         [[(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]] for k in (0, 1) for j in (0, 1) for i in (0, 1)],
@@ -18,7 +26,7 @@ def box_corners(low, high):
     )
 
 
-def body_colours(count):
+def body_colours(count: int) -> np.ndarray:
     """``count`` warm colours (count, 3), light to dark."""
     at = np.linspace(0, len(BODY_COLOURS) - 1, max(count, 1))
     stops = np.array(BODY_COLOURS)
@@ -41,12 +49,12 @@ class Scene:
     gate: tuple | None
 
     @cached_property
-    def colours(self):
+    def colours(self) -> np.ndarray:
         """One colour (nb, 3) for each body."""
         return body_colours(len(self.position))
 
 
-def gate_bottom(case, time):
+def gate_bottom(case: Mapping[str, Any], time: float) -> float | None:
     """Height (m) of the gate's lower edge at ``time`` (s), None without a gate: at rest, then up at its speed."""
     gate = case.get("gate")
     if not gate:
@@ -55,7 +63,7 @@ def gate_bottom(case, time):
     return start + gate.get("speed", 0.4) * max(0.0, time - gate.get("opens", 0.0))
 
 
-def load(run, frame):
+def load(run: Run, frame: int) -> Scene:
     """The :class:`Scene` of one frame of ``run``."""
     water, case = run.water(frame), run.case
     low, high = (np.array(case["box"][end], float) for end in ("min", "max"))
@@ -87,7 +95,7 @@ class View:
     up: tuple
     away: tuple
 
-    def project(self, points):
+    def project(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
         """Picture coordinates across and up, and the distance away, each (n,) in m."""
         points = np.asarray(points, float)
         return tuple(
@@ -95,7 +103,7 @@ class View:
             for axis in (self.right, self.up, self.away)
         )
 
-    def extent(self, scene, margin=0.025):
+    def extent(self, scene: Scene, margin: float = 0.025) -> tuple[float, float, float, float]:
         """The picture's (left, right, bottom, top) in m: the whole tank and a margin, as a share of its length."""
         across, up, _ = self.project(box_corners(*scene.tank))
         rim = margin * (across.max() - across.min())

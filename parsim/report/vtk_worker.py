@@ -5,9 +5,12 @@
 or a time limit leaves whole pictures.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import sys
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvista
@@ -16,13 +19,19 @@ import parsim
 from parsim.report.raster import LIGHT
 from parsim.report.scene import BOX_FACES, VIEWS, box_corners, load
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from parsim.report.scene import Scene, View
+
 WATER, GATE = (0.20, 0.52, 0.82), (0.42, 0.44, 0.47)
 EMPTY_CELLS = 3
 PEELS = 3  # layers of translucent faces drawn in their right order
 LONELY = 0.2  # filled share at the node of a particle with none or one beside it
 
 
-def water_surface(points, spacing):
+def water_surface(points: np.ndarray, spacing: float) -> tuple[pyvista.PolyData, np.ndarray]:
     """The surface of the water as a smooth triangle mesh, and the drops (k, 3) that are too lonely to be part of it.
 
     Each particle's volume is shared among the eight nearest nodes of a grid of the particles' spacing; the surface is
@@ -53,7 +62,7 @@ def _quads(points, quads):
     return pyvista.PolyData(points, np.hstack([np.full((len(quads), 1), 4), quads]).ravel())
 
 
-def lit_plotter():
+def lit_plotter() -> pyvista.Plotter:
     """A plotter with its lamps, to serve all frames."""
     plotter = pyvista.Plotter(off_screen=True, lighting="none")
     plotter.add_light(pyvista.Light(position=LIGHT, intensity=0.8, light_type="scene light"))
@@ -63,7 +72,7 @@ def lit_plotter():
     return plotter
 
 
-def furnish(plotter, scene):
+def furnish(plotter: pyvista.Plotter, scene: Scene) -> None:
     """Put everything of one moment in the place of what was there."""
     plotter.clear_actors()
     for body, colour in enumerate(scene.colours):
@@ -91,7 +100,7 @@ def furnish(plotter, scene):
         plotter.add_mesh(pyvista.PolyData(drops).glyph(geom=ball, scale=False, orient=False), color=WATER, ambient=0.6)
 
 
-def draw(plotter, scene, view, width, fine, path):
+def draw(plotter: pyvista.Plotter, scene: Scene, view: View, width: int, fine: bool, path: str) -> None:
     """Draw one picture of the extent the view gives the scene."""
     left, right, bottom, top = view.extent(scene)
     plotter.enable_anti_aliasing("ssaa") if fine else plotter.disable_anti_aliasing()
@@ -109,7 +118,7 @@ def draw(plotter, scene, view, width, fine, path):
     os.replace(f"{path}.part.png", path)
 
 
-def main(folder, jobs):
+def main(folder: Path | str, jobs: Sequence[dict[str, Any]]) -> None:
     """Draw the ``jobs``, those of one frame together."""
     run, plotter = parsim.open(folder), lit_plotter()
     for frame in dict.fromkeys(job["frame"] for job in jobs):

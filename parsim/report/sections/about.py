@@ -1,13 +1,20 @@
 """What a run was made from."""
 
+from __future__ import annotations
+
 import platform
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 
 from parsim.report.page import preformatted, section, table
 
+if TYPE_CHECKING:
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
 
-def parts(page):
+
+def parts(page: Page) -> str:
     """Versions and the case."""
     run = page.run
     path = run.folder / "case.toml"
@@ -20,7 +27,7 @@ def parts(page):
     )
 
 
-def versions(run, pictures):
+def versions(run: Run, pictures: str) -> list[tuple[str, Any]]:
     """Versions of the run and of what made this page."""
     info = run.info
     rows = [("parsim", info.get("parsim", "unknown")), *(info.get("versions") or {}).items()]

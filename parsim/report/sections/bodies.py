@@ -1,5 +1,9 @@
 """Where the bodies go and how deep they sit: their curves, their table, the numbers published of them."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from parsim.report.curves import INK, LINES, figure, name_ends
@@ -7,8 +11,16 @@ from parsim.report.measures import asked, columns, published
 from parsim.report.page import section, table
 from parsim.report.scene import body_colours
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
-def parts(page):
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
+
+def parts(page: Page) -> str:
     """The curves; the table stands with what is published."""
     return section(
         "Trajectories of the bodies",
@@ -22,7 +34,7 @@ def parts(page):
     )
 
 
-def body_tracks(run):
+def body_tracks(run: Run) -> dict[str, dict[str, np.ndarray]]:
     """Body name -> its rows of bodies.csv as a dict of columns, in the order of the case."""
     series = columns(run, "bodies")
     if series is None:
@@ -35,13 +47,13 @@ def body_tracks(run):
     }
 
 
-def compared_until(run):
+def compared_until(run: Run) -> float:
     """The end (s) of what is held against experiments: `report.alike_until`, or the run ends before."""
     series, alike = columns(run, "bodies"), asked(run, "alike_until", np.inf)
     return alike if series is None else min(alike, float(series["time"][-1]))
 
 
-def largest_x(track, end):
+def largest_x(track: Mapping[str, np.ndarray], end: float) -> tuple[float, float] | None:
     """The largest x (m) of a body's centre from t = 0 to `end`, s, and when (s), or None."""
     some = np.flatnonzero((track["time"] >= 0) & (track["time"] <= end) & np.isfinite(track["x"]))
     if not len(some):
@@ -50,7 +62,7 @@ def largest_x(track, end):
     return float(track["x"][best]), float(track["time"][best])
 
 
-def at_time(track, key, time):
+def at_time(track: Mapping[str, np.ndarray], key: str, time: float) -> float | None:
     """The value of a column at ``time`` (s), None outside the track."""
     times = track["time"]
     if not len(times) or not times[0] <= time <= times[-1]:
@@ -58,7 +70,7 @@ def at_time(track, key, time):
     return float(np.interp(time, times, track[key]))
 
 
-def draught(run, name, track):
+def draught(run: Run, name: str, track: Mapping[str, np.ndarray]) -> float | None:
     """How deep (m) a body sits at the last row with t <= 0: fill level over it minus its lowest corner, or None."""
     before = np.flatnonzero(track["time"] <= 0)
     if not len(before):
@@ -77,7 +89,7 @@ def draught(run, name, track):
     return float(max(levels) - lowest) if levels else None
 
 
-def archimedes_draught(run, name):
+def archimedes_draught(run: Run, name: str) -> float | None:
     """The draught (m) of a level box at rest: its density over the water's, times its height; None if it would sink."""
     body = run.case["bodies"][run.body_names.index(name)]
     size = np.array(body["shape"]["size"])
@@ -86,7 +98,7 @@ def archimedes_draught(run, name):
     return float(share * size[2]) if share < 1 else None
 
 
-def told(run):
+def told(run: Run) -> str:
     """A table with a row for each body: draught, places at `report.places`, largest x."""
     rows, times, end = [], asked(run, "places", ()), compared_until(run)
     for name, track in body_tracks(run).items():
@@ -104,7 +116,7 @@ def told(run):
     return table(titles, rows)
 
 
-def trajectories(run):
+def trajectories(run: Run) -> Figure | None:
     """x and z of each body's centre over time, with the published largest x."""
     tracks = body_tracks(run)
     if not tracks:

@@ -1,15 +1,25 @@
 """The volume of the water, and particles where none may be."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from parsim.report.curves import WATER, figure
 from parsim.report.measures import columns, percent
 from parsim.report.page import section
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
 LEAKS = ("in_walls", "in_bodies", "in_gate", "lost")
 
 
-def parts(page):
+def parts(page: Page) -> str:
     """Their curves."""
     return section(
         "Volume and particles",
@@ -22,7 +32,7 @@ def parts(page):
     )
 
 
-def lines(run):
+def lines(run: Run) -> list[str]:
     """Drift and leaks, for the summary."""
     counts = columns(run, "counts")
     if counts is None:
@@ -32,7 +42,7 @@ def lines(run):
     return [f"Volume within {percent(drift)} of its first value; particles at most " + ", ".join(leaks) + "."]
 
 
-def volume(run):
+def volume(run: Run) -> Figure | None:
     """The water's volume against its first value, and the counts of particles where none may be."""
     series = columns(run, "counts")
     if series is None:

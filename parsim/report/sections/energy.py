@@ -1,15 +1,27 @@
 """The budget of energy."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from parsim.report.curves import ACCENT, INK, figure
 from parsim.report.measures import columns, percent
 from parsim.report.page import section
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
 NOT_ENERGY = {"step", "time", "dt"}
 
 
-def parts(page):
+def parts(page: Page) -> str:
     """Its curves."""
     return section(
         "Energy",
@@ -23,7 +35,7 @@ def parts(page):
     )
 
 
-def lines(run):
+def lines(run: Run) -> list[str]:
     """What was created at most, for the summary."""
     series = columns(run, "energy")
     if series is None:
@@ -32,7 +44,7 @@ def lines(run):
     return [f"Energy created, at most: {percent(created)} of that at the start."]
 
 
-def energy_created(energy):
+def energy_created(energy: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """(E - E0 - work done from outside) / E0 at each time from t = 0 on: (times, share)."""
     later = energy["time"] >= 0
     work = sum((values[later] for name, values in energy.items() if name.startswith("work")), np.zeros(later.sum()))
@@ -42,7 +54,7 @@ def energy_created(energy):
     return energy["time"][later], (total - total[0] - (work - work[0])) / total[0]
 
 
-def energy(run):
+def energy(run: Run) -> Figure | None:
     """All parts of the energy over time, and what share of it was created from nothing."""
     series = columns(run, "energy")
     if series is None:

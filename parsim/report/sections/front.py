@@ -1,11 +1,21 @@
 """How far the water's front has come."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.report.curves import INK, WATER, figure
 from parsim.report.measures import columns, published
 from parsim.report.page import section
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def parts(page):
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
+
+def parts(page: Page) -> str:
     """The curve of the front."""
     return section(
         "Front",
@@ -18,13 +28,13 @@ def parts(page):
     )
 
 
-def lines(run):
+def lines(run: Run) -> list[str]:
     """When it arrived, for the summary."""
     arrival = front_arrival(run)
     return [] if arrival is None else [f"The front reached the end wall at {arrival:.3f} s."]
 
 
-def front_arrival(run):
+def front_arrival(run: Run) -> float | None:
     """Time (s) at which the front comes within two spacings of the downstream end, None if it does not or is there."""
     front = columns(run, "front")
     if front is None:
@@ -34,7 +44,7 @@ def front_arrival(run):
     return float(front["time"][later][there.argmax()]) if there.any() and not there[0] else None
 
 
-def front(run):
+def front(run: Run) -> Figure | None:
     """The water's front over time and when it reaches the end wall."""
     series = columns(run, "front")
     if series is None:
@@ -47,7 +57,7 @@ def front(run):
     if arrival is not None:
         axes.axvline(arrival, color=WATER, linestyle="--", label=f"arrives at {arrival:.3f} s")
     for number in published(run):
-        if number.quantity in QUANTITIES and number.low is not None:
+        if number.quantity in QUANTITIES and number.low is not None and number.high is not None:
             axes.axvspan(
                 number.low - 0.003,
                 number.high + 0.003,

@@ -1,11 +1,21 @@
 """Water levels."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.report.curves import LINES, figure
 from parsim.report.measures import columns
 from parsim.report.page import section
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def parts(page):
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
+
+def parts(page: Page) -> str:
     """Their curves."""
     return section(
         "Gauges",
@@ -18,7 +28,7 @@ def parts(page):
     )
 
 
-def gauges(run):
+def gauges(run: Run) -> Figure | None:
     """Water level over time at each gauge."""
     series = columns(run, "gauges")
     if series is None:

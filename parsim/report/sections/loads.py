@@ -1,11 +1,21 @@
 """What acts on the bodies."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.report.curves import ACCENT, FAINT, WATER, figure
 from parsim.report.measures import columns
 from parsim.report.page import section
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def parts(page):
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
+
+def parts(page: Page) -> str:
     """Its curves."""
     return section(
         "Loads on the bodies",
@@ -18,7 +28,7 @@ def parts(page):
     )
 
 
-def loads(run):
+def loads(run: Run) -> Figure | None:
     """Forces along x and z on each body, by kind."""
     series = columns(run, "loads")
     if series is None:

@@ -1,14 +1,22 @@
 """How the run went, in words."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.report.page import listing, section
 
+if TYPE_CHECKING:
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
 
-def parts(page):
+
+def parts(page: Page) -> str:
     """Its warnings."""
     return section("Warnings", listing(page.run.info.get("warnings", []), "warnings") or "<p>None.</p>")
 
 
-def lines(run):
+def lines(run: Run) -> list[str]:
     """Status, size and time."""
     info = run.info
     told = [f"Status: {info.get('status', 'unknown')}."]

@@ -1,12 +1,19 @@
 """What it looked like: pictures at some times, and a film."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.report import plane
 from parsim.report.animation import animate, rate
 from parsim.report.page import section
 from parsim.report.pictures import snapshot
 
+if TYPE_CHECKING:
+    from parsim.report.build import Page
 
-def parts(page):
+
+def parts(page: Page) -> str:
     """The pictures at `report.snapshots`, and the film."""
     times = page.run.times("water")
     return "".join(

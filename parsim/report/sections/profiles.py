@@ -1,5 +1,9 @@
 """The water's surface along the tank."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.report.curves import WATER, figure
@@ -7,10 +11,19 @@ from parsim.report.measures import asked, moments
 from parsim.report.page import section
 from parsim.report.scene import load
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+    from parsim.report.scene import Scene
+
 DETACHED = 3
 
 
-def parts(page):
+def parts(page: Page) -> str:
     """The profiles at `report.profiles`."""
     frames = moments(page.run.times("water"), asked(page.run, "profiles", ()))
     return section(
@@ -25,7 +38,7 @@ def parts(page):
     )
 
 
-def covered(position, scene):
+def covered(position: np.ndarray, scene: Scene) -> np.ndarray:
     """Which of the points (n, 3) have a body over them: bool (n,)."""
     found = np.zeros(len(position), bool)
     for face in scene.points[scene.quads]:
@@ -39,7 +52,9 @@ def covered(position, scene):
     return found
 
 
-def profile(water, spacing, low, high, left_out=False):
+def profile(
+    water: Mapping[str, Any], spacing: float, low: float, high: float, left_out: np.ndarray | bool = False
+) -> tuple[np.ndarray, np.ndarray]:
     """Surface height (m) of connected water in bins of x one spacing wide: (middles, heights), NaN where there is none.
 
     `left_out` (n,) bool are particles that do not count.
@@ -53,7 +68,7 @@ def profile(water, spacing, low, high, left_out=False):
     return (edges[1:] + edges[:-1]) / 2, np.where(np.isfinite(heights), heights, np.nan)
 
 
-def profiles(run, frames):
+def profiles(run: Run, frames: Sequence[int]) -> Figure:
     """The water's profile along the tank in the given frames, with the bodies' outlines."""
     drawn, axes = figure(len(frames), 1, 2.5, sharex=True)
     low, high = run.case["box"]["min"], run.case["box"]["max"]

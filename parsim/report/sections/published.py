@@ -1,16 +1,24 @@
 """What is measured here beside what is published."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.report import measures
 from parsim.report.page import section, table
 from parsim.report.sections import bodies
 
+if TYPE_CHECKING:
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
 
-def parts(page):
+
+def parts(page: Page) -> str:
     """The table of what is published, and that of the bodies."""
     return section("Here and published", compared(page.run), bodies.told(page.run))
 
 
-def measured(run, number):
+def measured(run: Run, number: measures.Published) -> float | None:
     """What this run has for a published number, None when it has nothing comparable."""
     from parsim.report.sections import SECTIONS  # which has this one among its own
 
@@ -20,7 +28,7 @@ def measured(run, number):
     return None
 
 
-def compared(run):
+def compared(run: Run) -> str:
     """A row for each published number."""
     rows, end = [], bodies.compared_until(run)
     for number in measures.published(run):

@@ -1,14 +1,24 @@
 """Where the time of the computer went."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.report.curves import FAINT, figure
 from parsim.report.page import section, table
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
 LIMIT_NAMES = {"wall_s": "wall time (s)", "steps": "steps", "ranks": "ranks", "threads": "threads per rank"}
 
 
-def parts(page):
+def parts(page: Page) -> str:
     """Rates, and the phases of the solver."""
     return section(
         "Speed",
@@ -22,7 +32,7 @@ def parts(page):
     )
 
 
-def speed(run):
+def speed(run: Run) -> list[tuple[str, Any]]:
     """Rates and times as rows."""
     info = run.info
     rows = [(LIMIT_NAMES[key], info[key]) for key in LIMIT_NAMES if key in info]
@@ -40,12 +50,12 @@ def _flat(values, before=""):
             yield before + key, value
 
 
-def phases(run):
+def phases(run: Run) -> Figure | None:
     """Seconds spent in each phase of the solver, longest on top."""
     spent = run.info.get("phases") or {}
     if not spent:
         return None
-    names = sorted(spent, key=spent.get)
+    names = sorted(spent, key=lambda name: spent[name])
     seconds = np.array([spent[name] for name in names], float)
     drawn, axes = figure(1, 1, 0.7 + 0.27 * len(names))
     bars = axes[0, 0].barh([name.replace("_", " ") for name in names], seconds, color=FAINT)
