@@ -6,13 +6,13 @@ from parsim.machine.jit import kernel
 from parsim.particles.cells import HALO
 
 
-def uneven(work, cuts):
+def uneven(work: np.ndarray, cuts: np.ndarray) -> float:
     """Largest work of a rank over the mean: work (layers,), cuts (ranks + 1,)."""
     shares = np.add.reduceat(work, cuts[:-1])
     return float(shares.max() / max(shares.mean(), 1.0))
 
 
-def even_cuts(work, ranks):
+def even_cuts(work: np.ndarray, ranks: int) -> np.ndarray:
     """Cuts (ranks + 1,) between layers that split work (layers,) evenly, at least HALO layers each."""
     before = np.concatenate([[0], np.cumsum(work)])
     cuts = np.searchsorted(before, before[-1] * np.arange(ranks + 1) / ranks)

@@ -1,18 +1,27 @@
 """Messages between ranks: the only file that imports mpi4py."""
 
+from __future__ import annotations
+
 import functools
+from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
 
 import numpy as np
 from mpi4py import MPI
 
 from parsim.errors import InputError, WriteError
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
 
-def waits(method):
+Found = TypeVar("Found")
+Given = TypeVarTuple("Given")
+
+
+def waits(method: Callable[[Comm, *Given], Found]) -> Callable[[Comm, *Given], Found]:
     """Note while `method` of a Comm may wait for other ranks that it does: `parsim.launch.watch` looks at that."""
 
     @functools.wraps(method)
-    def noted(self, *arguments):
+    def noted(self: Comm, *arguments: *Given) -> Found:
         self.calls, self.waiting = self.calls + 1, True
         try:
             return method(self, *arguments)
@@ -28,21 +37,22 @@ class Comm:
     calls: number of exchanges and sums so far; waiting: whether this rank is in one that may wait for others.
     """
 
-    def __init__(self, ring=False):
+    def __init__(self, ring: bool = False) -> None:
         self._mpi = MPI.COMM_WORLD
         self.rank, self.size = self._mpi.Get_rank(), self._mpi.Get_size()
         self.calls, self.waiting = 0, False
-        self._sends, self._sent = [], ()  # under way, and what must stay until they have arrived
+        self._sends: list[MPI.Request] = []  # under way
+        self._sent: tuple[np.ndarray, ...] = ()  # what must stay until they have arrived
         last = self.size - 1
         self.left = self.rank - 1 if self.rank > 0 else (last if ring else None)
         self.right = self.rank + 1 if self.rank < last else (0 if ring else None)
 
     @property
-    def library(self):
+    def library(self) -> str:
         """Version line of the MPI library."""
         return MPI.Get_library_version().split("\n")[0].strip("\0 ")
 
-    def exchange(self, to_left, to_right):
+    def exchange(self, to_left: np.ndarray, to_right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Send arrays of any length to both neighbours; returns (from left, from right), empty where there is none."""
         sizes = self.exchange_fixed(
             np.array([to_left.size]), np.array([to_right.size]), np.zeros(1, np.int64), np.zeros(1, np.int64)
@@ -50,13 +60,17 @@ class Comm:
         received = [np.empty(int(size[0]), to_left.dtype) for size in sizes]
         return self.exchange_fixed(to_left, to_right, *received)
 
-    def exchange_fixed(self, to_left, to_right, from_left, from_right):
+    def exchange_fixed(
+        self, to_left: np.ndarray, to_right: np.ndarray, from_left: np.ndarray, from_right: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """The same into given buffers whose lengths the ranks already know; returns the two buffers."""
         self.wait(self.start(to_left, to_right, from_left, from_right))
         return from_left, from_right
 
     @waits
-    def start(self, to_left, to_right, from_left, from_right):
+    def start(
+        self, to_left: np.ndarray, to_right: np.ndarray, from_left: np.ndarray, from_right: np.ndarray
+    ) -> list[MPI.Request]:
         """Begin to exchange buffers of known lengths; returns what `wait` wants before the received ones may be read.
 
         What is sent belongs to this object from now on.
@@ -73,7 +87,7 @@ class Comm:
         return receives
 
     @waits
-    def wait(self, receives):
+    def wait(self, receives: list[MPI.Request]) -> None:
         """End what `start` has begun, for the buffers received.
 
         Those sent are waited for at the next `start`: here that would mean to wait for a slower neighbour.
@@ -81,7 +95,7 @@ class Comm:
         MPI.Request.Waitall(receives)
 
     @waits
-    def deal(self, buffers):
+    def deal(self, buffers: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Send the uint8 array buffers[r] to each rank r; returns what they have sent to this one, in their order."""
         received = [np.empty(0, np.uint8)] * self.size
         for step in range(self.size):  # one partner at a time: no rank is flooded, and lengths may exceed 2 GB in all
@@ -93,25 +107,25 @@ class Comm:
         return received
 
     @waits
-    def sum_integers(self, array):
+    def sum_integers(self, array: np.ndarray) -> np.ndarray:
         """All-reduced sum of an int64 array, exact in any order."""
         result = np.empty_like(array)
         self._mpi.Allreduce(array, result, MPI.SUM)
         return result
 
     @waits
-    def max(self, values):
+    def max(self, values: Sequence[float] | np.ndarray) -> np.ndarray:
         """All-reduced element-wise maximum of floats."""
         result = np.empty(len(values))
         self._mpi.Allreduce(np.asarray(values, float), result, MPI.MAX)
         return result
 
     @waits
-    def share(self, item):
+    def share(self, item: Any) -> Any:
         """What rank 0 holds, on every rank."""
         return self._mpi.bcast(item)
 
-    def first(self, work, *arguments):
+    def first(self, work: Callable[..., Found], *arguments: Any) -> Found:
         """What `work` returns on rank 0, which alone does it, on every rank; so are its InputError and WriteError."""
         result = error = None
         if self.rank == 0:
@@ -125,7 +139,7 @@ class Comm:
             raise error
         return result
 
-    def stream(self, array):
+    def stream(self, array: np.ndarray) -> Iterator[np.ndarray]:
         """On rank 0 yields the array of each rank in turn, one at a time (bounded memory); nothing elsewhere."""
         if self.rank:
             self._hand_in(array)
@@ -145,11 +159,11 @@ class Comm:
         self._mpi.Recv(block, source, tag=4)
         return block
 
-    def abort(self, code):
+    def abort(self, code: int) -> None:
         """End all ranks at once; may be called from any thread."""
         self._mpi.Abort(code)
 
-    def ring(self):
+    def ring(self) -> Ring | None:
         """A Ring of all ranks; None for a rank alone, or where the MPI library bears one thread only."""
         if self.size == 1 or MPI.Query_thread() < MPI.THREAD_MULTIPLE:
             return None
@@ -159,17 +173,18 @@ class Comm:
 class Ring:
     """Short messages from each rank to the next, and from the last to the first, for a thread of its own."""
 
-    def __init__(self, mpi):
-        self._mpi, self._sent = mpi.Dup(), []
+    def __init__(self, mpi: MPI.Intracomm) -> None:
+        self._mpi = mpi.Dup()
+        self._sent: list[MPI.Request] = []
         rank, size = mpi.Get_rank(), mpi.Get_size()
         self.left, self._right = (rank - 1) % size, (rank + 1) % size
 
-    def send(self, *numbers):
+    def send(self, *numbers: int) -> None:
         """Tell the next rank some whole numbers, without waiting."""
         self._sent = [request for request in self._sent if not request.Test()]
         self._sent.append(self._mpi.Isend(np.array(numbers, np.int64), self._right))
 
-    def receive(self, count=2):
+    def receive(self, count: int = 2) -> tuple[int, ...] | None:
         """What the rank before has told last (count,), or None when there is no news."""
         news = None
         while self._mpi.Iprobe(self.left):
@@ -177,7 +192,7 @@ class Ring:
             self._mpi.Recv(news, self.left)
         return news if news is None else tuple(news.tolist())
 
-    def close(self):
+    def close(self) -> None:
         """End it; called on all ranks together, when their threads have ended."""
         self._mpi.Barrier()
         self.receive()

@@ -5,7 +5,10 @@ left halo | owned | right halo, each sorted by (cell, layer, id), so that a part
 order on any number of ranks.
 """
 
+from __future__ import annotations
+
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +19,14 @@ from parsim.machine.jit import kernel
 from parsim.machine.timers import Timers
 from parsim.particles.cells import HALO, LAYERS, REACH, Stack, holding, occupied, sort_by_cell, sort_key, spread
 from parsim.particles.state import POSITION, Particles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from parsim.domain.comm import Comm
+    from parsim.domain.slab import Source
+    from parsim.particles.cells import Grid
+    from parsim.particles.state import Field
 
 _UNEVEN = 1.005  # largest work of a rank over the mean that leaves the cuts alone
 
@@ -29,25 +40,27 @@ class Domain:
     `gone` are those that the last rebuild has found outside.
     """
 
-    def __init__(self, grid, comm, sources, fields, timers=None):
+    def __init__(
+        self, grid: Grid, comm: Comm, sources: Sequence[Source], fields: tuple[Field, ...], timers: Timers | None = None
+    ) -> None:
         self.grid, self.comm, self.sources, self._fields = grid, comm, sources, fields
         self.timers = timers or Timers()
         self.uneven = 1.0
         self.cuts = even_cuts(np.ones(grid.layers), comm.size)
         self.lost = 0
-        self._buffers = {}
+        self._buffers: dict[str, np.ndarray] = {}
 
     @property
-    def layers(self):
+    def layers(self) -> tuple[int, int]:
         """First layer owned and the one past the last."""
         return int(self.cuts[self.comm.rank]), int(self.cuts[self.comm.rank + 1])
 
-    def owns(self, x):
+    def owns(self, x: np.ndarray) -> np.ndarray:
         """Which of the points x (n,) lie in this rank's slab: bool (n,)."""
         layer = self.grid.layer(x)
         return (layer >= self.layers[0]) & (layer < self.layers[1])
 
-    def rebuild(self, fluid, time):
+    def rebuild(self, fluid: Particles, time: float) -> None:
         """Take the owned fluid (Particles), migrate it, add boundary samples and images, sort, fill the halos.
 
         Before: `fluid` may lie anywhere. After: `particles`, `own`, `first` and the halo slices are new, and all
@@ -58,13 +71,13 @@ class Domain:
         parts = [fluid, *(source.samples(slab, time) for source in self.sources)]
         self._assemble(self._with_images(parts))
 
-    def refresh(self, *names):
+    def refresh(self, *names: str) -> None:
         """Bring `names` up to date in the images and halos."""
         with self.refreshing(*names):
             pass
 
     @contextmanager
-    def refreshing(self, *names):
+    def refreshing(self, *names: str) -> Iterator[None]:
         """The same, with the halos only up to date at the end of the block, which runs while the messages travel.
 
         The block may not write the fields `names`, nor look at them in a halo.
@@ -85,14 +98,16 @@ class Domain:
                 for name, row in zip(names, values, strict=True):
                     getattr(p, name)[at] = row + shift if name == "x" else row
 
-    def near(self, value, name):
+    def near(self, value: int, name: str) -> np.ndarray:
         """Which particles may have a neighbour whose field `name` is `value`, by cells: bool (particles,)."""
         marks = holding(value, getattr(self.particles, name), self.first).reshape(-1, *self.grid.count[1:])
         columns = np.maximum.reduceat(marks, self.stack.pieces[:-1])
         marks = spread(columns, REACH)[self.stack.column].ravel()
         return np.repeat(marks.view(bool), np.diff(self.first))
 
-    def sum(self, values, units, index=None, count=1):
+    def sum(
+        self, values: np.ndarray, units: np.ndarray | float, index: np.ndarray | None = None, count: int = 1
+    ) -> np.ndarray:
         """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,).
 
         `units`, one or as many as sums: powers of two, the same on all ranks. Nothing is lost down to 1e-18 of them;
@@ -109,19 +124,19 @@ class Domain:
             total[:] = np.nan
         return total[0] if index is None else total
 
-    def dot(self, one, two, unit):
+    def dot(self, one: np.ndarray, two: np.ndarray, unit: float) -> float:
         """Exact sum over all ranks of the products of one (n,) and two (n,), in `unit`: see `sum`."""
         return float(self.sum((one * two)[:, None], unit)[0])
 
-    def count(self, *numbers):
+    def count(self, *numbers: int) -> list[int]:
         """Sums over all ranks of whole numbers."""
         return [int(n) for n in self.comm.sum_integers(np.array(numbers, np.int64))]
 
-    def max(self, *values):
+    def max(self, *values: float) -> np.ndarray:
         """Largest over all ranks, element by element."""
         return self.comm.max(values)
 
-    def balance(self, work, move):
+    def balance(self, work: np.ndarray, move: bool) -> None:
         """Compare the work (owned,) int64 of the ranks; if it is uneven and `move`, the next rebuild has other cuts."""
         layers = np.zeros(self.grid.layers, np.int64)
         accumulate(self.grid.layer(self.particles.x[self.own]), work, layers)
@@ -132,7 +147,7 @@ class Domain:
             if uneven(layers, cuts) < self.uneven:
                 self.cuts = cuts
 
-    def cut_evenly(self, x, count):
+    def cut_evenly(self, x: np.ndarray, count: np.ndarray) -> None:
         """Cut to an equal number of particles, `count` (n,) of them at each x (n,), before anything is stored.
 
         Every rank gives its own: an x that all ranks give counts for all of them.

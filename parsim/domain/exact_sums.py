@@ -33,7 +33,7 @@ def accumulate(values, index, units, limbs):
     return good
 
 
-def value(limbs, units):
+def value(limbs: np.ndarray, units: np.ndarray) -> np.ndarray:
     """Float64 sums (m, c) of limbs (m, c, 2) int64 in `units` (m, c); NaN where the sum left its range."""
     carry = limbs[..., 1] >> 40
     high, low = limbs[..., 0] + carry, limbs[..., 1] - (carry << 40)

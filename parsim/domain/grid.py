@@ -1,11 +1,18 @@
 """The grid of cells of a case, and how many ranks can share it."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from parsim.errors import InputError
 from parsim.geometry.faces import repeats
 from parsim.particles.cells import HALO, REACH, Grid
 
+if TYPE_CHECKING:
+    from parsim.case.model import Case
 
-def check_ranks(case, ranks):
+
+def check_ranks(case: Case, ranks: int) -> None:
     """Raise InputError when the box has too few layers of cells for this many ranks."""
     layers = grid_of(case).layers
     if layers < HALO * ranks:
@@ -15,7 +22,7 @@ def check_ranks(case, ranks):
         )
 
 
-def grid_of(case):
+def grid_of(case: Case) -> Grid:
     """The global grid: the box, and beyond its walls and open sides the depth of the wall particles."""
     beyond, reach = case.layers * case.spacing, case.reach
     periodic = repeats(case)

@@ -1,28 +1,45 @@
 """What a source of samples needs to know of the slab that it gives them to."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
 import numpy as np
 
 from parsim.particles.cells import LAYERS, REACH
+
+if TYPE_CHECKING:
+    from parsim.particles.cells import Grid
+    from parsim.particles.state import Particles
+
+
+class Source(Protocol):
+    """What gives samples of something solid: bodies, gate, walls."""
+
+    def samples(self, slab: Slab, time: float) -> Particles:
+        """Those that stand in the slab at `time`, s."""
 
 
 class Slab:
     """Layers `begin` to `end`, and which of their cells water can reach."""
 
-    def __init__(self, grid, begin, end, marks):
+    def __init__(self, grid: Grid, begin: int, end: int, marks: np.ndarray) -> None:
         self.begin, self.end = begin, end
         self._grid, self._marks = grid, marks
 
-    def cells(self, x, y, z):
+    def cells(self, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Cell of each point (n,) within the slab, -1 for points of other slabs."""
         layer = self._grid.layer(x)
         cell = self._grid.cell(layer // LAYERS - self.begin // LAYERS, y, z)
         return np.where((layer >= self.begin) & (layer < self.end), cell, -1)
 
-    def reached(self, x, radius):
+    def reached(self, x: np.ndarray, radius: np.ndarray) -> np.ndarray:
         """Which of the balls about x (n,) of `radius` (n,), m, reach into the slab: bool (n,)."""
         return (self._grid.layer(x + radius) >= self.begin) & (self._grid.layer(x - radius) < self.end)
 
-    def beside_period(self, x, y, z, radius=0.0):
+    def beside_period(
+        self, x: np.ndarray, y: np.ndarray, z: np.ndarray, radius: np.ndarray | float = 0.0
+    ) -> np.ndarray:
         """Which of the balls about x, y, z (n,) of `radius`, m, come within a halo of a periodic side: bool (n,)."""
         g, points, found = self._grid, (x, y, z), np.zeros(x.size, bool)
         for axis in np.flatnonzero(g.periodic):
@@ -30,6 +47,6 @@ class Slab:
             found |= inside < REACH * g.edge[axis]
         return found
 
-    def awake(self, cells):
+    def awake(self, cells: np.ndarray) -> np.ndarray:
         """Which of `cells` (n,) are in the slab and within reach of water: bool (n,)."""
         return (cells >= 0) & (self._marks[cells] == 1)

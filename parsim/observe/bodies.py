@@ -1,8 +1,16 @@
 """Where the bodies are and how they move."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.observe.observer import columns
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
 
 
 class Bodies:
@@ -26,10 +34,10 @@ class Bodies:
         spin_z="rad/s",
     )
 
-    def __init__(self, case):
+    def __init__(self, case: Case) -> None:
         pass
 
-    def rows(self, s):
+    def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         values = np.hstack([s.bodies.shown(name) for name in ("position", "quaternion", "velocity", "spin")])
         return [[name, *map(float, row)] for name, row in zip(s.bodies.names, values, strict=True)]

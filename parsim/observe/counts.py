@@ -1,5 +1,9 @@
 """How many particles there are, and how many are where none may be."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.geometry.faces import planes_of_walls
@@ -8,6 +12,10 @@ from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 from parsim.particles.state import SURFACE
 from parsim.solid.shapes.kernels import distance
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
 
 
 class Counts:
@@ -27,10 +35,10 @@ class Counts:
         bodies_left="-",
     )
 
-    def __init__(self, case):
+    def __init__(self, case: Case) -> None:
         self._walls, self._used, self._slack = planes_of_walls(case), np.isin(range(3), case.axes), 0.25 * case.spacing
 
-    def rows(self, s):
+    def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
         gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)

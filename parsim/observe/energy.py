@@ -1,10 +1,18 @@
 """Energy of water, bodies and contacts, and what the gate has done."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.case.scales import scales
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
 
 
 class Energy:
@@ -24,10 +32,10 @@ class Energy:
         total="J",
     )
 
-    def __init__(self, case):
+    def __init__(self, case: Case) -> None:
         self._gravity, self._unit = case.gravity, scales(case).energy
 
-    def rows(self, s):
+    def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 3))
         energies(at, p.kinematics, s.scheme.mass, self._gravity, out)

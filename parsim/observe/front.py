@@ -1,10 +1,18 @@
 """How far the water has come."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 from parsim.particles.state import DETACHED
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
 
 
 class Front:
@@ -13,10 +21,10 @@ class Front:
     name = "front"
     columns = columns(x="m")
 
-    def __init__(self, case):
+    def __init__(self, case: Case) -> None:
         self._low, self._high, self._spacing = case.box.min[0], case.box.max[0], case.spacing
 
-    def rows(self, s):
+    def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, width = s.domain.particles, 2.0 * self._spacing
         count = int((self._high - self._low) / width) + 1
@@ -36,7 +44,7 @@ def wet_columns(at, surface, x, low, width, filled, farthest):
             farthest[k] = max(farthest[k], x[i])
 
 
-def front(filled, farthest, spacing):
+def front(filled: np.ndarray, farthest: np.ndarray, spacing: float) -> float:
     """Place of the first column without connected water downstream of the first with some, m: the last water before."""
     wet = np.flatnonzero(filled)
     if not wet.size:

@@ -1,11 +1,19 @@
 """Water levels at given places."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Gauge
 from parsim.particles.state import DETACHED
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
 
 
 class Gauges:
@@ -14,7 +22,7 @@ class Gauges:
     name = "gauges"
     columns = columns(gauge="-", x="m", y="m", level="m")
 
-    def __init__(self, case):
+    def __init__(self, case: Case) -> None:
         middle = 0.5 * (case.box.min[1] + case.box.max[1])
         gauges = [sensor for sensor in case.output.sensors if isinstance(sensor, Gauge)]
         self._names = [gauge.name for gauge in gauges]
@@ -22,7 +30,7 @@ class Gauges:
         self._places, self._spacing = np.array(places).reshape(-1, 2), case.spacing
         self._flat = case.dimensions == 2
 
-    def rows(self, s):
+    def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         if not self._names:
             return []

@@ -1,6 +1,12 @@
 """What watches a run: an object with a name, columns and rows. One file each, listed in the folder's `__init__`."""
 
-from typing import ClassVar, NamedTuple, Protocol
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
 
 CLOCK = {"step": "-", "time": "s"}  # the columns that begin every row
 
@@ -15,21 +21,21 @@ class Column(NamedTuple):
 class Observer(Protocol):
     """Looks at a simulation and changes nothing: no order among observers."""
 
-    name: ClassVar[str]
-    columns: ClassVar[tuple]
+    name: str
+    columns: tuple[Column, ...]
 
-    def __init__(self, case):
+    def __init__(self, case: Case) -> None:
         """For one case."""
 
-    def rows(self, simulation):
+    def rows(self, simulation: Simulation) -> list[list[Any]]:
         """Rows, lists of values in the order of the columns; called on all ranks together."""
 
 
-def columns(**units):
+def columns(**units: str) -> tuple[Column, ...]:
     """Columns from their units by name."""
     return tuple(Column(name, unit) for name, unit in units.items())
 
 
-def table(observer):
+def table(observer: type[Observer]) -> dict[str, str]:
     """Unit of every column of a series by name, those of the clock first."""
     return CLOCK | {column.name: column.unit for column in observer.columns}

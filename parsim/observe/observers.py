@@ -1,5 +1,9 @@
 """What is measured of a run while it runs: what exists is listed here, in the order of its tables."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 from parsim.observe.bodies import Bodies
 from parsim.observe.counts import Counts
 from parsim.observe.energy import Energy
@@ -9,12 +13,16 @@ from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
 
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
+
 OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front)  # what is seen at a time; what has left is told at once
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
 
 
-def rows_now(case, simulation):
+def rows_now(case: Case, simulation: Simulation) -> dict[str, dict[str, list[Any]]]:
     """What every observer says of a simulation as it is: {name: {column: list of values}}."""
     found = {}
     for observer in OBSERVERS:

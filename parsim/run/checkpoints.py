@@ -1,7 +1,10 @@
 """When checkpoints are written, which of them are kept, and when a run must stop for the sake of one."""
 
+from __future__ import annotations
+
 import shutil
 import time as clock
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +14,12 @@ from parsim.output import checkpoint
 from parsim.output.series import next_multiple
 from parsim.particles.state import water_bytes
 
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.launch.stop import Stop
+    from parsim.run.recorder import Recorder
+    from parsim.run.simulation import Simulation
+
 KEPT = 2  # checkpoints, besides the milestones
 _RESERVE = 2.0  # s before the walltime, besides what a checkpoint has taken
 _SPEED = 50e6  # bytes/s at which the first checkpoint is expected to be written
@@ -19,7 +28,7 @@ _SPEED = 50e6  # bytes/s at which the first checkpoint is expected to be written
 class Keeper:
     """Asked by the solver before every step that rebuilds, on all ranks together; `finish` at the end of the run."""
 
-    def __init__(self, case, recorder, stop, simulation):
+    def __init__(self, case: Case, recorder: Recorder, stop: Stop, simulation: Simulation) -> None:
         self.case, self.recorder, self.stop, self.comm = case, recorder, stop, simulation.comm
         self.folder, self.timers, self.last = recorder.out / checkpoint.FOLDER, simulation.timers, None
         self.bytes = simulation.fluid_count * water_bytes(case.water.scheme.fields)
@@ -27,7 +36,7 @@ class Keeper:
         self._looked = self._saved = clock.perf_counter()
         self._milestone = self._next_milestone(simulation.time)
 
-    def look(self, simulation):
+    def look(self, simulation: Simulation) -> str:
         """Write a checkpoint if one is due; returns why the run must stop now, "" to go on. Raises WriteError."""
         now = clock.perf_counter()
         self._pace, self._looked = max(0.9 * self._pace, now - self._looked), now
@@ -47,7 +56,7 @@ class Keeper:
             raise WriteError(self.recorder.out, text, shared=True)
         return REASONS[int(reason)]
 
-    def finish(self):
+    def finish(self) -> None:
         """Write the state at the last rebuild, from which the run can be prolonged."""
         if self.last is not None:
             self._write(self.last, False)

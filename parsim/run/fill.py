@@ -5,6 +5,10 @@ space that bodies take is measured finely, and as many lattice points are left o
 the bodies first, whole rows thinned evenly. Only what lies beside bodies is looked at.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from parsim.case.fill import level_over, profile_shares
@@ -12,10 +16,18 @@ from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, Particles, make_id
 from parsim.run.near_bodies import Beside
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from parsim.case.model import Case
+    from parsim.domain.comm import Comm
+    from parsim.fluid.scheme import Scheme
+    from parsim.solid.bodies import Bodies
+
 _FINE = 4  # measuring points per spacing and axis
 
 
-def scatter(index):
+def scatter(index: np.ndarray) -> np.ndarray:
     """A fixed shuffle: a well-mixed 64-bit number of each index (splitmix64 of Steele, Lea & Flood 2014)."""
     with np.errstate(over="ignore"):
         z = (np.asarray(index).astype(np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
@@ -24,7 +36,7 @@ def scatter(index):
         return z ^ (z >> np.uint64(31))
 
 
-def beside_bodies(points, case, bodies):
+def beside_bodies(points: Lattice, case: Case, bodies: Bodies) -> np.ndarray:
     """Numbers (n,) of the points of a Lattice that lie in bodies or within a spacing of them."""
     found = [np.zeros(0, np.int64)]
     for centre, radius in zip(bodies.position, bodies.radius, strict=True):
@@ -37,20 +49,20 @@ def beside_bodies(points, case, bodies):
     return np.unique(np.concatenate(found))
 
 
-def taken_by_bodies(lattices, case, bodies, comm):
+def taken_by_bodies(lattices: Sequence[Lattice], case: Case, bodies: Bodies, comm: Comm) -> np.ndarray:
     """Numbers (n,) of the points that are not water, since bodies and the gaps beside them take them.
 
     Numbers count the points of all `lattices`, one of each fill: the amount is right for all of them together. Each
     rank of `comm` measures its share of the points; all get the same.
     """
-    number, place, spacing, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
+    numbers, places, spacings, first = [np.zeros(0, np.int64)], [np.zeros((0, 3))], [np.zeros((0, 3))], 0
     for points in lattices:
-        beside = beside_bodies(points, case, bodies)
-        number.append(first + beside)
-        place.append(points.points(beside))
-        spacing.append(np.broadcast_to(points.spacing, (beside.size, 3)))
+        found = beside_bodies(points, case, bodies)
+        numbers.append(first + found)
+        places.append(points.points(found))
+        spacings.append(np.broadcast_to(points.spacing, (found.size, 3)))
         first += points.size
-    number, place, spacing = (np.concatenate(parts) for parts in (number, place, spacing))
+    number, place, spacing = (np.concatenate(parts) for parts in (numbers, places, spacings))
     if not number.size:
         return number
     nearest, taken = Beside(place, case, bodies).look(place)
@@ -69,7 +81,7 @@ def taken_by_bodies(lattices, case, bodies, comm):
     return number[near[np.lexsort((scatter(number[near]), depth))[: round(share.sum())]]]
 
 
-def kept_out(points, number, place, case, bodies):
+def kept_out(points: Lattice, number: np.ndarray, place: np.ndarray, case: Case, bodies: Bodies) -> np.ndarray:
     """`place` (n, 3), m, of points of a Lattice that were moved; moved back where that led into bodies or the gate.
 
     None comes nearer than half a spacing to them that has not stood there before.
@@ -89,7 +101,7 @@ def kept_out(points, number, place, case, bodies):
     return place
 
 
-def disordered(points, number, first, share, axes):
+def disordered(points: Lattice, number: np.ndarray, first: int, share: float, axes: Iterable[int]) -> np.ndarray:
     """Points (n, 3), m, of these numbers of a Lattice, each moved by up to `share` spacings along each of `axes`.
 
     The moves are a fixed shuffle of the particle's number, `first` + number; none leads beyond the outermost planes.
@@ -102,7 +114,7 @@ def disordered(points, number, first, share, axes):
     return place
 
 
-def columns(case):
+def columns(case: Case) -> tuple[np.ndarray, np.ndarray]:
     """Where the lattice planes across x of all fills are (n,), m, and how many points each has (n,)."""
     fills = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
     x = [points.rows[0] for points in fills]
@@ -110,7 +122,13 @@ def columns(case):
     return np.concatenate([np.zeros(0), *x]), np.concatenate([np.zeros(0), *count])
 
 
-def water(case, bodies, scheme, comm, here=lambda x: np.ones(x.size, bool)):
+def water(
+    case: Case,
+    bodies: Bodies,
+    scheme: Scheme,
+    comm: Comm,
+    here: Callable[[np.ndarray], np.ndarray] = lambda x: np.ones(x.size, bool),
+) -> Particles:
     """The water at the start, in pressure balance: the particles at `here`(x), bool; called on all ranks together.
 
     Ids count the points of all fills, so that they are the same for any slab. Velocities are those of the fills, but
@@ -154,7 +172,7 @@ def _particles(case, scheme, fill, points, idents):
     )
 
 
-def flow(case, p):
+def flow(case: Case, p: Particles) -> None:
     """Give the fluid among the particles `p` the velocity of the fill it is from, at the height where it is."""
     first = 0
     for fill in case.water.fill:

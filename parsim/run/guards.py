@@ -1,10 +1,18 @@
 """What ends a run that has gone wrong: what happened, which particles or body, where, and what may help."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from parsim.errors import RunError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from parsim.run.simulation import Simulation
 
 _SHOWN = 5  # particles in a message
 _COLLAPSED = 1e-3  # of the longest time step
@@ -12,7 +20,7 @@ _EARLY = 20  # steps in which the start is to blame
 _HARD = 0.1  # of the speed of sound that a contact gives a body in one step
 
 
-def runaway(simulation):
+def runaway(simulation: Simulation) -> RunError:
     """The error for water or a body at or over the model's speed of sound, or not a number; asked for on all ranks."""
     s, p, at = simulation, simulation.domain.particles, simulation.near.fluid
     speed = np.sqrt(p.u[at] ** 2 + p.v[at] ** 2 + p.w[at] ** 2)
@@ -33,7 +41,7 @@ def runaway(simulation):
     return RunError(s.comm.share(text))
 
 
-def collapsed(simulation, dt):
+def collapsed(simulation: Simulation, dt: float) -> RunError | None:
     """The error for a time step that is too short to go on with, None for one that is not."""
     s = simulation
     if dt > _COLLAPSED * s.scheme.time_step(0.0):
@@ -47,7 +55,7 @@ def collapsed(simulation, dt):
     return RunError(text + _likely(s))
 
 
-def outside(simulation, rows):
+def outside(simulation: Simulation, rows: Sequence[Sequence[Any]]) -> RunError:
     """The error for what has left the box: rows of step, time, what, id, place, velocity."""
     told = [_particle(row[3:]) if row[2] == "water" else _moving(row[2], row[4:]) for row in rows]
     more = f"; and {len(told) - _SHOWN} more" if len(told) > _SHOWN else ""

@@ -1,6 +1,9 @@
 """A run to its end: steps until the time is up, kept and watched; or until it has to stop."""
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from parsim.domain.comm import Comm
 from parsim.domain.grid import check_ranks
@@ -14,8 +17,12 @@ from parsim.run.checkpoints import Keeper
 from parsim.run.recorder import Recorder
 from parsim.run.simulation import Simulation
 
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.resume import Found
 
-def run(case, source, out, force=False, walltime=None):
+
+def run(case: Case, source: Path | str, out: Path | str, force: bool = False, walltime: float | None = None) -> int:
     """Run a case, read from the file `source`, to its end and write everything to the folder `out`.
 
     `walltime`, s: of the job. Returns 0, or 75 when the run was stopped before its end and has left a checkpoint.
@@ -26,7 +33,7 @@ def run(case, source, out, force=False, walltime=None):
         return _advance(case, folder, Path(source).stem, walltime)
 
 
-def resume(found, folder, walltime=None):
+def resume(found: Found, folder: Folder, walltime: float | None = None) -> int:
     """Go on with what `parsim.run.resume` has found in a Folder that is taken; as `run`."""
     folder.comm = comm = _comm(found.case)
     account = snapshot = None

@@ -1,6 +1,8 @@
 """What is solid beside given points: how near the next body is, and whether bodies take the place."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -9,6 +11,10 @@ from parsim.geometry.nearby import near_points
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.shapes.kernels import distance
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.solid import bodies as solid
 
 _OPPOSITE = -0.9  # cosine below which two outward directions face each other across a gap
 _MARGIN = 2.0  # spacings beyond a body within which its points are looked for
@@ -28,7 +34,7 @@ class Bodies(NamedTuple):
 class Beside:
     """The bodies near points (n, 3), m, which may then be moved by up to half a spacing along each axis."""
 
-    def __init__(self, points, case, bodies):
+    def __init__(self, points: np.ndarray, case: Case, bodies: solid.Bodies) -> None:
         used = np.isin(range(3), case.axes)
         turn = matrices(bodies.quaternion).reshape(-1, 9)
         self._bodies = Bodies(bodies.position, turn, bodies.shape, bodies.half, used)
@@ -36,7 +42,7 @@ class Beside:
         reach = bodies.radius + _MARGIN * case.spacing
         self._first, self._near = near_points(points, bodies.position, reach, used)
 
-    def look(self, points):
+    def look(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Distance to the nearest body (n,), m, inf where none is near, and whether a point is in a body or in a gap
         narrower than the spacing (n,)."""
         nearest, taken = np.empty(len(points)), np.empty(len(points), bool)

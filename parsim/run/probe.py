@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 
 from parsim.machine import variant
 
@@ -11,15 +12,15 @@ _GAIN = 0.93  # share of the first variant's time that another one must stay bel
 _EDGE, _REACH, _CALLS = 20, 3.5, 100  # particles along the edge of the probe's lattice, its support, timed calls
 
 
-def fastest():
+def fastest() -> str:
     """Name of the fastest variant; the first possible one unless another is clearly faster."""
     names = variant.possible()
     seconds = measured(names) if len(names) > 1 else {}
-    best = min(seconds, key=seconds.get, default=names[0])
+    best = min(seconds, key=lambda name: seconds[name], default=names[0])
     return best if seconds.get(best, 0.0) < _GAIN * seconds.get(names[0], 0.0) else names[0]
 
 
-def measured(names):
+def measured(names: Sequence[str]) -> dict[str, float]:
     """Seconds of one call of a large sweep for each of `names` that could be timed; compiled side by side."""
     started = {}
     for name in names:
@@ -62,7 +63,7 @@ def _seconds():
         at,
         Lists(start, end, end, index),
         Kinematics(Vectors(x, y, z), Vectors(*fields[:3])),
-        tables.Density(*fields[3:5], np.full(x.size, -1, np.int32)),
+        tables.Density(fields[3], fields[4], np.full(x.size, -1, np.int32)),
         Vectors(*fields[5:]),
         weights.WEIGHTS["wendland_c4"].of_radius(3.1),
         growth,

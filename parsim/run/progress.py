@@ -7,6 +7,7 @@ import os
 import sys
 import time as clock
 from collections import deque
+from typing import Self, TextIO, cast
 
 from rich.console import Console
 from rich.control import Control
@@ -53,7 +54,7 @@ class Progress:
     As a context manager it ends its line also when the run fails.
     """
 
-    def __init__(self, start: float, until: float):
+    def __init__(self, start: float, until: float) -> None:
         self.start, self.until = start, until
         self.on_terminal = mpirun.terminal() > 0
         self.began = clock.perf_counter()
@@ -64,9 +65,9 @@ class Progress:
         self.closed = False
         # rates: over some ten seconds on a terminal, since the line before in a log
         self.samples = deque([(self.began, start, 0)], maxlen=50 if self.on_terminal else 2)
-        self.console = Console(file=_Outlet(sys.stdout), force_terminal=self.on_terminal, highlight=False)
+        self.console = Console(file=cast(TextIO, _Outlet(sys.stdout)), force_terminal=self.on_terminal, highlight=False)
 
-    def step(self, step: int, time: float, dt: float, active: int):
+    def step(self, step: int, time: float, dt: float, active: int) -> None:
         """Count one step of `active` particles that ended at `time` (simulated s); print when something is due."""
         self.work += active
         self.last = (step, time, dt)
@@ -79,7 +80,7 @@ class Progress:
             self.every = min(2 * self.every, LONGEST)
         self.due = now + self.every
 
-    def close(self, status: str, step: int | None = None, time: float | None = None):
+    def close(self, status: str, step: int | None = None, time: float | None = None) -> None:
         """End with one line: `status` ("done", "failed", ...), where the run stands, its mean speed.
 
         `step` and `time` (s) are the last ones, where the solver knows better than the last line did. Only the
@@ -96,13 +97,13 @@ class Progress:
         rate = quantity(self.work / wall)
         self.say(f"{status}: t = {time:.4g} s, {step} steps in {duration(wall)}, {rate} particle-steps/s")
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind, error, traceback):
+    def __exit__(self, kind: object, error: BaseException | None, traceback: object) -> None:
         self.close("failed" if error else "ended")
 
-    def say(self, line: str):
+    def say(self, line: str) -> None:
         """Print one line."""
         self.console.print(line, soft_wrap=True)
         self.console.file.flush()

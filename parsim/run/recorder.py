@@ -1,5 +1,7 @@
 """Everything a run writes: the folder, the series, the frames, the progress, the account at the end."""
 
+from __future__ import annotations
+
 import json
 import os
 import platform
@@ -8,6 +10,7 @@ import time as clock
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import version
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -20,6 +23,13 @@ from parsim.output.frames import WaterFrame, write_bodies, write_index, write_te
 from parsim.output.reader import MARK
 from parsim.output.series import Table, next_multiple
 from parsim.run.progress import Progress
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from parsim.case.model import Case
+    from parsim.output.folder import Folder
+    from parsim.run.simulation import Simulation
 
 _FIELDS = {
     "id": ("i8", ()),
@@ -37,7 +47,7 @@ class Recorder:
     As a context manager it tells of failure. `account`: that of the checkpoint from which the run goes on.
     """
 
-    def __init__(self, case, folder, name="", account=None):
+    def __init__(self, case: Case, folder: Folder, name: str = "", account: dict[str, Any] | None = None) -> None:
         self.case, self.folder, self.out, self.name = case, folder, folder.path, name
         self.comm, self.main = folder.comm, folder.comm.rank == 0
         self.began = clock.perf_counter()
@@ -56,10 +66,12 @@ class Recorder:
             return []
         return [{"ended": "killed"} | piece for piece in pieces]
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if kind is not None and self.main:
             if getattr(self, "progress", None):
                 self.progress.close("failed")
@@ -67,7 +79,7 @@ class Recorder:
                 with suppress(WriteError):  # of a full disk the error in flight tells already
                     self._end("failed", error=f"{kind.__name__}: {error}")
 
-    def begin(self, simulation):
+    def begin(self, simulation: Simulation) -> None:
         """Open the tables; write the first rows and frame, unless the run goes on."""
         self.observers, self.lost = [observer(self.case) for observer in OBSERVERS], Lost(self.case)
         self.next_frame, self.next_row = simulation.time, simulation.time
@@ -100,7 +112,7 @@ class Recorder:
             name: Table(self.out / "series" / f"{name}.csv", units, resume=step) for name, units in TABLES.items()
         }
 
-    def account(self, simulation):
+    def account(self, simulation: Simulation) -> dict[str, Any]:
         """What a restart must know of the outputs as they are now."""
         if self.main:
             self._tell_gone(simulation)
@@ -115,13 +127,13 @@ class Recorder:
             "versions": variant.versions(),
         }
 
-    def secure(self):
+    def secure(self) -> None:
         """See all rows on the disk: a checkpoint relies on them."""
         if self.main:
             for table in self.tables.values():
                 table.secure()
 
-    def watch(self, simulation):
+    def watch(self, simulation: Simulation) -> None:
         """Look at the simulation after a step; write what is due."""
         if self.main:
             self.folder.lock.beat()
@@ -157,7 +169,7 @@ class Recorder:
         self.tables[Lost.name].flush()
         simulation.gone.clear()
 
-    def fault(self, simulation):
+    def fault(self, simulation: Simulation) -> None:
         """The frame of a run that goes wrong in this step."""
         self._frame(simulation)
 
@@ -179,7 +191,8 @@ class Recorder:
             name = f"frames/bodies_{number:06d}.vtkhdf"
             self.frames["bodies"].append((name, time))
             fields = {field: simulation.bodies.shown(field) for field in _BODY}
-            write_bodies(self.out / name, *simulation.bodies.surface(), fields, time, step)
+            points, quads, body = simulation.bodies.surface()
+            write_bodies(self.out / name, points, quads, body, fields, time, step)
         if self.main:
             self._write_indices()
 
@@ -199,13 +212,13 @@ class Recorder:
             for points, *values in blocks:
                 frame.append(points, dict(zip(_FIELDS, values, strict=True)))
 
-    def finish(self, simulation):
+    def finish(self, simulation: Simulation) -> None:
         """Last frame and row if they are not written yet, then the account of the run."""
         if self.frames["water"][-1][1] < simulation.time:
             self._frame(simulation)
         self._close("done", simulation)
 
-    def stopped(self, simulation, reason):
+    def stopped(self, simulation: Simulation, reason: str) -> None:
         """End a run that has been stopped, with a checkpoint, before its end."""
         go_on = f"parsim resume {shlex.quote(str(self.out))}"
         self._close(f"stopped ({reason})", simulation, reason=reason, go_on=go_on)

@@ -1,9 +1,11 @@
 """From an output folder to what goes on in it: the case, and the newest whole checkpoint."""
 
+from __future__ import annotations
+
 import math
 import sys
 import tomllib
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from parsim.case.file import read
 from parsim.case.model import parse
@@ -12,17 +14,24 @@ from parsim.machine import variant
 from parsim.output import checkpoint
 from parsim.output.reader import open as open_run
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from parsim.case.model import Case
+
 
 class Found(NamedTuple):
     """What to go on with; without checkpoint from the beginning."""
 
-    case: object
+    case: Case
     checkpoint: checkpoint.Checkpoint | None
     name: str  # of the case
     kernel: str | None  # variant of the machine code, where it is known
 
 
-def find(out, until=None, kernel=None, wanted=None):
+def find(
+    out: Path | str, until: float | None = None, kernel: str | None = None, wanted: Case | None = None
+) -> Found | None:
     """What to go on with in the output folder `out`, Found; None: the run is done.
 
     `until` (s) replaces the end of the case, `kernel` the variant; `wanted` is the Case that the run is expected to be
@@ -108,7 +117,7 @@ def _changed(one, other):
 
 def _flat(data, path=""):
     """Values of nested tables by key.path."""
-    flat = {}
+    flat: dict[str, Any] = {}
     for key, value in data.items():
         flat |= _flat(value, f"{path}{key}.") if isinstance(value, dict) else {path + key: value}
     return flat

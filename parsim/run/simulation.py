@@ -1,6 +1,9 @@
 """The time loop: what happens in a step, when lists are rebuilt, when things are written, when the run stops."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +13,11 @@ from parsim.output.checkpoint import Snapshot
 from parsim.run import guards
 from parsim.run.fill import columns, flow, water
 from parsim.run.setup import Models
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.domain.comm import Comm
+    from parsim.particles.state import Particles
 
 _COUNTERS = ("time", "step_count", "dt", "speed", "rebuilds")
 _MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
@@ -22,14 +30,15 @@ class Simulation:
     and awake boundary particles of all ranks; gone: on rank 0, rows of what has left the box and is not told of yet.
     """
 
-    def __init__(self, case, comm, snapshot=None):
+    def __init__(self, case: Case, comm: Comm, snapshot: Snapshot | None = None) -> None:
         self.case, self.comm, self.timers = case, comm, Timers()
         models = self.models = Models(case, comm, self.timers)
         self.domain, self.near, self.scheme = models.domain, models.near, models.scheme
         self.solids = solids = models.solids
         self.bodies, self.contacts, self.gate = solids.bodies, solids.contacts, solids.gate
         self.time, self.step_count, self.dt, self.speed, self.rebuilds = case.start, 0, 0.0, 0.0, 0
-        self._uneven, self.gone = [0.0, 1.0, 0], []  # sum, most and number of looks
+        self._uneven = [0.0, 1.0, 0]  # sum, most and number of looks
+        self.gone: list[tuple] = []
         self._weight = math.hypot(*case.gravity)
         self._damping = case.speed / case.depth if case.depth else 0.0
         if snapshot is None:
@@ -43,17 +52,17 @@ class Simulation:
             self._restore(snapshot)
 
     @property
-    def fluid(self):
+    def fluid(self) -> Particles:
         """This rank's fluid particles, without images: Particles, kept fields."""
         return self.domain.particles.take(self.near.fluid)
 
     @property
-    def uneven(self):
+    def uneven(self) -> tuple[float, float]:
         """Largest work of a rank over the mean before each rebuild: the mean of that, and the most."""
         total, most, looks = self._uneven
         return total / looks if looks else 1.0, most
 
-    def snapshot(self):
+    def snapshot(self) -> Snapshot:
         """All that a restart needs, before a step that rebuilds; called on all ranks together."""
         (lost,) = self.domain.count(self.domain.lost)
         account = {"lost": lost, "uneven": list(self._uneven)}
@@ -71,7 +80,7 @@ class Simulation:
         self.domain.cut_evenly(snapshot.water.x, np.ones(len(snapshot.water)))
         self._rebuild(snapshot.water)
 
-    def rebuilds_next(self):
+    def rebuilds_next(self) -> bool:
         """Whether the next step begins with a rebuild; the same on every rank."""
         return self._outrun(self._next_dt())
 
@@ -79,7 +88,7 @@ class Simulation:
         acceleration = max(self._weight, self.bodies.surface_acceleration())
         return min(self.scheme.time_step(self.speed, acceleration), self.contacts.limit())
 
-    def step(self):
+    def step(self) -> None:
         """Advance water and bodies by one time step."""
         self.dt = dt = self._next_dt()
         if error := guards.collapsed(self, dt):

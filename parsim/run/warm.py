@@ -15,6 +15,7 @@ import time
 import zlib
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from parsim.errors import InputError
 from parsim.launch import mpirun
@@ -23,7 +24,7 @@ from parsim.machine import variant
 PATIENCE = 900.0  # s that a rank waits for another one's compiler
 _FOREIGN = ("OMPI_", "PMIX", "PMI_", "PRTE", "SLURM_")  # the compiler is no rank of the job
 _LOCAL = ("OMPI_COMM_WORLD_LOCAL_RANK", "SLURM_LOCALID", "MPI_LOCALRANKID")
-_CASE = {
+_CASE: dict[str, Any] = {
     "dimensions": 3, "spacing": 0.01, "box": {"max": [0.2, 0.06, 0.1]}, "run": {"until": 1.0},
     "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.1, 0.06, 0.05]}]},
     "gate": {"min_x": 0.1, "max_x": 0.105},
@@ -31,7 +32,7 @@ _CASE = {
     "bodies": [{"name": name, "shape": {"size": [0.03, 0.04, 0.02]}, "density": 600.0, "material": "wood",
                 "position": [x, 0.03, 0.05]} for name, x in (("one", 0.03), ("two", 0.0605))],
 }  # fmt: skip
-_PERIODIC = {
+_PERIODIC: dict[str, Any] = {
     "box": {"max": [0.2, 0.06, 0.1], "faces": {"y_min": "periodic", "y_max": "periodic"}},
     "gate": None,
     "bodies": [],
@@ -39,7 +40,7 @@ _PERIODIC = {
 }
 
 
-def prepare():
+def prepare() -> None:
     """Choose the kernel variant, if none is named yet, and return when its machine code is in the cache.
 
     Rank 0 chooses for all. The first rank of each machine has compiled what is missing. Raises InputError for a variant
@@ -136,7 +137,7 @@ def _chosen():
     return name
 
 
-def exercise():
+def exercise() -> None:
     """Run a small case with everything in it for a few steps, which compiles and caches, or loads, every kernel."""
     from parsim.case.model import parse
     from parsim.domain.comm import Comm
