@@ -4,12 +4,15 @@ import ast
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted((ROOT / "parsim").rglob("*.py"))
+CHECKED = [ROOT / place for place in tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"]["files"]]
+HINTED = sorted(path for place in CHECKED for path in ([place] if place.is_file() else place.rglob("*.py")))
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
 SCRIPTS = sorted([*(ROOT / "jobs").glob("*.sh"), *(ROOT / "tests").glob("*.sh"), ROOT / ".ci" / "run"])
 TOP = {"pyproject.toml", "parsim", "tests", "cases", "jobs", "README.md", "LICENSE", "CHANGELOG.md", "CITATION.cff"}
@@ -141,6 +144,19 @@ def public(parsed):
                     yield inner
 
 
+def unhinted(parsed):
+    """Public functions and methods, kernels aside, that lack the hint of a parameter or of what they return."""
+    compiled, known = set(kernels(parsed)), list(public(parsed))
+    made = [one for node in known for one in getattr(node, "body", ()) if getattr(one, "name", "") == "__init__"]
+    for node in known + made:
+        if isinstance(node, ast.FunctionDef) and node not in compiled:
+            a = node.args
+            every = [*a.posonlyargs, *a.args, *a.kwonlyargs, *filter(None, (a.vararg, a.kwarg))]
+            bare = [arg.arg for arg in every if not arg.annotation and arg.arg not in ("self", "cls")]
+            if bare or not node.returns:
+                yield f"{node.name}: {', '.join(bare) or 'what it returns'}"
+
+
 def test_the_rules_can_be_broken():
     bad = ast.parse(
         "@rows\ndef f(x, y):\n  t = 0.0\n  for i in prange(9):\n    s = 0.0\n    for j in range(3):\n"
@@ -162,6 +178,11 @@ def test_the_rules_can_be_broken():
         "from parsim import comm\nfrom parsim.fluid.weights import w\nif TYPE_CHECKING:\n  from parsim.run import r\n"
     )
     assert own(ast.parse(told)) == {"comm", "fluid"}
+    half = ast.parse(
+        "def f(x: int, *y): ...\n@rows\ndef g(x): ...\ndef _h(x): ...\nclass C:\n  def __init__(self): ...\n"
+        "  def i(self) -> int: ...\n"
+    )
+    assert sorted(unhinted(half)) == ["__init__: what it returns", "f: y"]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name)
@@ -196,6 +217,17 @@ def test_public_things_are_described(path):
     parsed = tree(path)
     assert ast.get_docstring(parsed), "a module says what it is for"
     assert [node.name for node in public(parsed) if not ast.get_docstring(node)] == []
+
+
+@pytest.mark.parametrize("path", HINTED, ids=name)
+def test_public_things_have_type_hints(path):
+    assert list(unhinted(tree(path))) == []
+
+
+def test_the_type_hints_are_right(tmp_path):
+    words = [sys.executable, "-m", "mypy", "--cache-dir", tmp_path]
+    ran = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
 
 
 @pytest.mark.parametrize("path", SOURCES + TESTS + SCRIPTS, ids=name)
