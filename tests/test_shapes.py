@@ -104,6 +104,13 @@ def test_patches_cover_the_surface(shape):
     assert min(depth) > 0.0 and max(depth) < 0.06
 
 
+@pytest.mark.parametrize("shape", [*GIVEN, BoxShape(size=(0.07, 0.05, 1.0)), sphere(0.031)], ids=str)
+@pytest.mark.parametrize("depth", [0.01, 0.03, 0.04, 0.2])
+@pytest.mark.parametrize("planar", [False, True])
+def test_samples_are_counted_without_making_them(shape, depth, planar):
+    assert shape.number_of_samples(0.01, depth, planar) == len(shape.samples(0.01, depth, planar).offsets)
+
+
 @pytest.mark.parametrize("share", [0.01, 0.3, 0.5, 0.9, 0.999])
 def test_a_sphere_floats_at_its_draught(share):
     ball = sphere(0.2)

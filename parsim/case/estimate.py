@@ -38,7 +38,8 @@ def estimate(case):
     wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
     water, gate = round(_water(case)), _gate(case, layers)
     alike = Counter(body.shape for body in case.bodies)
-    body = sum(number * _samples(case, shape, layers) for shape, number in alike.items())
+    sampling = case.spacing, layers * case.spacing, case.dimensions == 2
+    body = sum(number * shape.number_of_samples(*sampling) for shape, number in alike.items())
     active = water + body + round(gate * wet) + _walls(case, layers, wet)
     dt = time_step(case)
     return Estimate(
@@ -133,11 +134,6 @@ def _in_gate(case, fill):
     lengths = np.subtract(fill.max, fill.min)
     inside = min(fill.max[0], case.gate.max_x) - max(fill.min[0], case.gate.min_x) if case.gate else 0.0
     return [max(0.0, inside), *lengths[1:]]
-
-
-def _samples(case, shape, layers):
-    """Number of sample points of a body of this shape down to `layers` spacings below its surface."""
-    return len(shape.samples(case.spacing, layers * case.spacing, case.dimensions == 2).offsets)
 
 
 def _immersed(case, body):

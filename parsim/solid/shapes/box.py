@@ -82,6 +82,15 @@ class BoxShape(ShapeTable):
         cell = [2.0 * h / max(n, 1) for h, n in zip(half, counts, strict=True)]
         return np.hstack([grid, area])[surface], cell
 
+    def number_of_samples(self, spacing, depth, planar):
+        """See `ShapeTable`."""
+        every, inner = 1, 1
+        for edge in (self.size[a] for a in ((0, 2) if planar else (0, 1, 2))):
+            count = max(1, round(edge / spacing))
+            outside = min(math.ceil(depth / edge * count - 0.5), (count + 1) // 2)  # of a line, from one end
+            every, inner = every * count, inner * max(count - 2 * outside, 0)
+        return every - inner
+
     def samples(self, spacing, depth, planar):
         """See `ShapeTable`: a grid, even along each edge."""
         half, used = np.array(self.half), [0, 2] if planar else [0, 1, 2]

@@ -64,6 +64,10 @@ class ShapeTable(Table):
         """Contact elements (n, 6) and the distances between them (3,), m: see `shapes.elements_of`."""
         raise NotImplementedError
 
+    def number_of_samples(self, spacing, depth, planar):
+        """How many `samples` there are, without making them."""
+        raise NotImplementedError
+
     def samples(self, spacing, depth, planar):
         """`Samples` at about the `spacing`, m, down to a `depth`, m, below the surface."""
         raise NotImplementedError

@@ -83,19 +83,25 @@ class SphereShape(ShapeTable):
         """See `ShapeTable`: none, a sphere touches at one point."""
         return np.zeros((0, 6)), [self.diameter] * 3
 
-    def samples(self, spacing, depth, planar):
-        """See `ShapeTable`: shells about a spacing thick, of points on spirals, each with its share of the shell."""
+    def _shells(self, spacing, depth):
+        """Middle radius, m, volume over that of a lattice point, and number of samples of each shell."""
         radius = 0.5 * self.diameter
         number = max(round(radius / spacing), 1)
-        offsets, shares = [], []
-        for shell in range(number):
+        for shell in range(min(number, max(math.ceil(depth / radius * number - 0.5), 1))):
             outer, inner = radius * (1.0 - shell / number), radius * (1.0 - (shell + 1) / number)
-            if radius - outer >= depth:
-                break
-            volume = 4.0 / 3.0 * math.pi * (outer**3 - inner**3)
-            count = max(round(volume / spacing**3), 1)
-            offsets.append(0.5 * (outer + inner) * spiral(count) if count > 1 else np.zeros((1, 3)))
-            shares.append(np.full(count, volume / count / spacing**3))
+            volume = 4.0 / 3.0 * math.pi * (outer**3 - inner**3) / spacing**3
+            yield 0.5 * (outer + inner), volume, max(round(volume), 1)
+
+    def number_of_samples(self, spacing, depth, planar):
+        """See `ShapeTable`."""
+        return sum(count for _, _, count in self._shells(spacing, depth))
+
+    def samples(self, spacing, depth, planar):
+        """See `ShapeTable`: shells about a spacing thick, of points on spirals, each with its share of the shell."""
+        radius, offsets, shares = 0.5 * self.diameter, [], []
+        for middle, volume, count in self._shells(spacing, depth):
+            offsets.append(middle * spiral(count) if count > 1 else np.zeros((1, 3)))
+            shares.append(np.full(count, volume / count))
         first = len(offsets[0])
         normal = spiral(first)
         axis = np.abs(normal).argmax(axis=1)
