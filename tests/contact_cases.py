@@ -8,7 +8,7 @@ import numpy as np
 from parsim.case.model import Faces
 from parsim.geometry.rotation import from_angles, matrices, turn_of
 from parsim.solid.bodies import Bodies
-from parsim.solid.laws.settings import FoundationLaw
+from parsim.solid.laws import FoundationLaw
 from parsim.solid.shapes import BoxShape
 
 HALF, MASS, MU = (0.03625, 0.03625, 0.00975), 0.089, 0.412

@@ -32,7 +32,8 @@ from parsim.case.types import (
 from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
 from parsim.observe.sensors import Sensor
-from parsim.solid.laws.settings import FoundationLaw, Law
+from parsim.solid.laws import DEFAULT as FOUNDATION
+from parsim.solid.laws import Law
 from parsim.solid.shapes import Shape
 
 
@@ -125,7 +126,7 @@ class Material(Table):
 class Contacts(Table):
     """How bodies touch each other, the walls and the gate."""
 
-    law: Law = Field(FoundationLaw(), description="contact law")
+    law: Law = Field(FOUNDATION, description="contact law")
     steps_per_contact: Annotated[Whole, Field(ge=5, le=10000)] = Field(20, description="steps in one contact, at least")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.solid import table
-from parsim.solid.laws.foundation import pair_tables
+from parsim.solid.element import damping_of
 from parsim.solid.motion import begin, finish
 from parsim.solid.search import (
     ELEMENT,
@@ -42,7 +42,7 @@ class Contacts:
         self._steps_per_contact = case.contacts.steps_per_contact
         material = list(case.materials).index(case.wall_material) if case.materials else 0
         self._walls, self._period = _of_material(planes_of_walls(case, "bodies"), material), period(case)
-        self._law = pair_tables(list(case.materials.values()), _depth(case, bodies))
+        self._law, self._pair_law = case.contacts.law.NUMBER, _law(case, bodies)
         first, self._elements, cell = elements_of(bodies)
         self._first = np.append(first, np.full(len(self._driven), first[-1]))  # what is driven has none
         self._table = _table(bodies, cell, self._driven, material)
@@ -119,6 +119,7 @@ class Contacts:
             self._elements,
             self._walls,
             self._law,
+            self._pair_law,
             self._pairs,
             self._shift,
             self._marks,
@@ -167,10 +168,20 @@ def _pose(bodies):
     return bodies.position, bodies.quaternion, bodies.velocity, bodies.spin
 
 
-def _depth(case, bodies):
-    """Depth of the elastic layer, m: that of the law, else half the thinnest body."""
-    used = [0, 2] if bodies.planar else [0, 1, 2]
-    return case.contacts.law.depth or (float(bodies.half[:, used].min()) if len(bodies) else 1.0)
+def _law(case, bodies):
+    """Table (3, n, n) over pairs of materials: what the law needs of them; damping ratio; friction.
+
+    Restitution and friction of a pair are the means of the two (Canelas et al. 2016, doi 10.1016/j.cpc.2016.05.003).
+    """
+    used, each = [0, 2] if bodies.planar else [0, 1, 2], list(case.materials.values())
+    thinnest = float(bodies.half[:, used].min()) if len(bodies) else 1.0
+    law = np.zeros((3, len(each), len(each)))
+    for i, one in enumerate(each):
+        for j, two in enumerate(each):
+            law[0, i, j] = case.contacts.law.of_pair(one, two, thinnest)
+            law[1, i, j] = damping_of(0.5 * (one.restitution + two.restitution))
+            law[2, i, j] = 0.5 * (one.friction + two.friction)
+    return law
 
 
 def _of_material(walls, material):

@@ -4,13 +4,14 @@ import math
 
 from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
-from parsim.solid.laws.foundation import TANGENTIAL, friction_force, normal_force
+from parsim.solid.element import TANGENTIAL, friction_force, normal_force
+from parsim.solid.laws.kernels import stiffness
 from parsim.solid.motion import clear_loads, speed_of
 from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
 from parsim.solid.tanks import load_pair
-from parsim.solid.touch import centre_of, held_share, measure, normal_of
+from parsim.solid.touch import centre_of, measure, normal_of, roundness
 
 _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -19,7 +20,7 @@ _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 def press(m, touch, number, lapse):
     """Contact loads of the first `number` pairs into the table and the tanks; how many elements touch.
 
-    `law` (3, n, n): stiffness per area, Pa/m, damping ratio and friction over materials. `lapse`: time since the last
+    `pair_law` (3, n, n): what the law needs, damping ratio and friction over materials. `lapse`: time since the last
     call, s, by which friction springs have stretched. 50 ns an element that touches, 1 us a pair that overlaps.
     """
     pairs, marks = touch.pairs, touch.marks
@@ -39,10 +40,17 @@ def press(m, touch, number, lapse):
 
 @kernel
 def coefficients(m, touch, a, b):
-    """(stiffness per area, damping ratio, friction) of bodies a and b, or of body a and wall -1 - b."""
-    law, walls = touch.law, touch.walls
+    """(what the law needs, damping ratio, friction) of bodies a and b, or of body a and wall -1 - b."""
+    law, walls = touch.pair_law, touch.walls
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
     return law[0, one, two], law[1, one, two], law[2, one, two]
+
+
+@kernel
+def hardness(m, touch, c, area, depth):
+    """(force over touching area and depth, Pa/m; energy held over force times depth) of pair `c`."""
+    own = coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])[0]
+    return stiffness(touch.law, own, area, roundness(m, touch, c), depth)
 
 
 @kernel
@@ -71,12 +79,11 @@ def _push(m, touch, c, n, total, lapse):
     """
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    stiffness, damping, mu = coefficients(m, touch, a, b)
+    (_, damping, mu), (rigid, held) = coefficients(m, touch, a, b), hardness(m, touch, c, total, slots[last, DEPTH])
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
-    held = held_share(touch, c)
-    dashpot = 2.0 * damping * math.sqrt(effective * stiffness / total * (0.5 / held))
+    dashpot = 2.0 * damping * math.sqrt(effective * rigid / total * (0.5 / held))
     motion = relative_motion(m, a, b, by)
-    touching, shear, pressed, force, loss = _sum(touch, first, last, n, motion, lapse, (stiffness, dashpot, mu, held))
+    touching, shear, pressed, force, loss = _sum(touch, first, last, n, motion, lapse, (rigid, dashpot, mu, held))
     load_pair(m, touch, c, shear + pressed, shear, force, loss)
     return touching
 
@@ -88,7 +95,7 @@ def _sum(touch, first, last, n, motion, lapse, law):
     Both loads are six numbers: force and torque about the centre of body a.
     """
     marks, slots = touch.marks, touch.slots
-    stiffness, dashpot, mu, held = law
+    rigid, dashpot, mu, held = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(TANGENTIAL) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -99,11 +106,11 @@ def _sum(touch, first, last, n, motion, lapse, law):
             continue
         x, y, z = slots[slot, POINT] - ox, slots[slot, POINT + 1] - oy, slots[slot, POINT + 2] - oz
         v = velocity_at(motion, x, y, z)
-        normal, elastic = normal_force(stiffness, dashpot, area, depth, v[0] * n[0] + v[1] * n[1] + v[2] * n[2])
+        normal, elastic = normal_force(rigid, dashpot, area, depth, v[0] * n[0] + v[1] * n[1] + v[2] * n[2])
         s, age = (0.0, 0.0, 0.0), 0.0
         if marks[slot, TOUCHING]:
             s, age = three(slots, slot, STRETCH), lapse
-        slip, s, energy = friction_force(s, n, v, age, mu * normal, TANGENTIAL * stiffness * area, tangential * area)
+        slip, s, energy = friction_force(s, n, v, age, mu * normal, TANGENTIAL * rigid * area, tangential * area)
         slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
         marks[slot, TOUCHING] = 1
         count, stored, pressed = count + 1, stored + energy, pressed + held * elastic * depth

@@ -32,12 +32,14 @@ _MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
 class Touch(NamedTuple):
-    """What may touch, and with what: the tables above; first, elements: see `shapes.box`; law: see `forces.press`."""
+    """What may touch, and with what: the tables above; first, elements: see `shapes.elements_of`; law: its number;
+    pair_law: see `forces.press`; tanks: see `tanks`."""
 
     first: np.ndarray
     elements: np.ndarray
     walls: np.ndarray
-    law: np.ndarray
+    law: int
+    pair_law: np.ndarray
     pairs: np.ndarray
     shift: np.ndarray
     marks: np.ndarray

@@ -6,14 +6,14 @@ import numpy as np
 
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
-from parsim.solid.forces import coefficients, compliance, free_time, press, relative_motion, velocity_at
-from parsim.solid.laws.foundation import TANGENTIAL
+from parsim.solid.element import TANGENTIAL
+from parsim.solid.forces import compliance, free_time, hardness, press, relative_motion, velocity_at
 from parsim.solid.motion import alone, drift_involved, kick_involved
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, STRETCH, A, B
 from parsim.solid.separation import ROUND_A, overlap_share, ramp_of
 from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at
 from parsim.solid.tanks import STORED, restrain
-from parsim.solid.touch import centre_of, held_share, measure, normal_of, show
+from parsim.solid.touch import centre_of, measure, normal_of, show
 
 _AT_REST = 5  # steps in half a period of what lies or is pressed together
 _CALM = 0.25  # how far, over their depth, such contacts may still move
@@ -97,7 +97,8 @@ def _rate(m, touch, c, n):
         if slots[slot, AREA] > 0.0:
             trace += slots[slot, AREA] * compliance(m, a, b, three(slots, slot, POINT), by, n)
     bounce = total * compliance(m, a, b, centre_of(slots, first, last), by, n)
-    return coefficients(m, touch, a, b)[0] * max(bounce, trace / 3.0)  # three ways to move on a face
+    rigid, held = hardness(m, touch, c, total, slots[last, DEPTH])
+    return rigid * (1.0 / held - 1.0) * max(bounce, trace / 3.0)  # three ways to move on a face
 
 
 @kernel
@@ -114,7 +115,8 @@ def _calm(m, touch, c, n, area):
             fastest = max(fastest, abs(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
             volume += slots[slot, AREA] * slots[slot, DEPTH]
     centre = centre_of(slots, first, last)
-    square = coefficients(m, touch, a, b)[0] * area * compliance(m, a, b, centre, by, n)
+    rigid, held = hardness(m, touch, c, area, slots[last, DEPTH])
+    square = rigid * (1.0 / held - 1.0) * area * compliance(m, a, b, centre, by, n)
     unbalanced = _acceleration(m, a, centre, (0.0, 0.0, 0.0), n)
     if b >= 0:
         unbalanced -= _acceleration(m, b, centre, by, n)
@@ -139,14 +141,15 @@ def elastic(m, touch, number):
     energy = 0.0
     for c in range(number):
         apart, x, y, z = normal_of(m, touch, c)
-        if apart >= 0.0 or measure(m, touch, c, (x, y, z)) == 0.0:
+        area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
+        if area == 0.0:
             continue
-        stiffness, potential = coefficients(m, touch, pairs[c, A], pairs[c, B])[0], 0.0
+        (rigid, held), potential = hardness(m, touch, c, area, slots[pairs[c, LAST], DEPTH]), 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
-                pressed = held_share(touch, c) * depth * depth
+                pressed = held * depth * depth
                 sheared = 0.5 * TANGENTIAL * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-                potential += stiffness * slots[slot, AREA] * (pressed + sheared)
+                potential += rigid * slots[slot, AREA] * (pressed + sheared)
         energy += min(potential, tanks[c, STORED])
     return energy

@@ -34,8 +34,7 @@ def measure(m, touch, c, n):
     a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
     if pairs[c, FEATURE] >= ROUND_A:
-        depth = max(-normal_of(m, touch, c)[0], 0.0)
-        _spot(m, touch, c, n, depth, 0.0)
+        _spot(m, touch, c, n, max(-normal_of(m, touch, c)[0], 0.0))
         return touch.slots[last, AREA]
     here, opposite = pose_of(m, a, _NOWHERE), (-n[0], -n[1], -n[2])
     if b < 0:
@@ -48,32 +47,33 @@ def measure(m, touch, c, n):
 
 
 @kernel
-def _spot(m, touch, c, n, depth, deep):
-    """Where something round touches, into the last slot of pair `c`: one element `depth` deep.
-
-    Its area is that with which the law is true to the round form: over the circle that a sphere of radius R shares with
-    a plane in it to the depth d, depths sum up to pi R d^2, so it is pi R d, taken at `deep` radii unless 0.
-    """
-    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
-    a, b = pairs[c, A], pairs[c, B]
-    body, by, sign = a, _NOWHERE, -1.0
-    radius = m[a, HALF]
-    if pairs[c, FEATURE] == ROUND_B:
-        body, by, sign, radius = b, three(shift, c, 0), 1.0, m[b, HALF]
-    elif b >= 0 and touches_at_one_point(shape_of(m, b)):
-        radius = m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF])
-    x, y, z = three(m, body, POSITION)
-    arm = sign * (m[body, HALF] - 0.5 * depth)
-    x, y, z = x + by[0] + arm * n[0], y + by[1] + arm * n[1], z + by[2] + arm * n[2]
-    area = math.pi * radius * (depth if deep == 0.0 else deep * radius)
-    _set(slots, pairs[c, LAST], depth, area, x, y, z)
+def roundness(m, touch, c):
+    """Radius of what is round where pair `c` touches, m: of both 1 / (1/R + 1/S); 0 between faces and edges."""
+    a, b = touch.pairs[c, A], touch.pairs[c, B]
+    if touch.pairs[c, FEATURE] < ROUND_A:
+        return 0.0
+    if touch.pairs[c, FEATURE] == ROUND_B:
+        return m[b, HALF]
+    if b >= 0 and touches_at_one_point(shape_of(m, b)):
+        return m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF])
+    return m[a, HALF]
 
 
 @kernel
-def held_share(touch, c):
-    """Energy that pair `c` holds over force times depth: a half, where a round body's force goes with the square a
-    third."""
-    return 1.0 / 3.0 if touch.pairs[c, FEATURE] >= ROUND_A else 0.5
+def _spot(m, touch, c, n, depth):
+    """Where something round touches, into the last slot of pair `c`: one element `depth` deep.
+
+    Over the circle that a sphere of radius R shares with a plane in it to the depth d, depths sum up to pi R d^2: so
+    its area is pi R d.
+    """
+    pairs, slots = touch.pairs, touch.slots
+    body, by, sign = pairs[c, A], _NOWHERE, -1.0
+    if pairs[c, FEATURE] == ROUND_B:
+        body, by, sign = pairs[c, B], three(touch.shift, c, 0), 1.0
+    x, y, z = three(m, body, POSITION)
+    arm = sign * (m[body, HALF] - 0.5 * depth)
+    x, y, z = x + by[0] + arm * n[0], y + by[1] + arm * n[1], z + by[2] + arm * n[2]
+    _set(slots, pairs[c, LAST], depth, math.pi * roundness(m, touch, c) * depth, x, y, z)
 
 
 @kernel
@@ -150,13 +150,15 @@ def _cross(m, touch, by, c, n, share):
 
 @kernel
 def show(m, touch, c, n):
-    """Area, place and depth 1 of all elements of pair `c` into `slots`, as if all touched; their area, m2."""
+    """Area, place and depth 1 of all elements of pair `c` into `slots`, as if all touched; their area, m2.
+
+    What is round is as deep as it is expected to get.
+    """
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, far = pairs[c, A], pairs[c, B], three(shift, c, 0), 1e9
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
     if pairs[c, FEATURE] >= ROUND_A:
-        _spot(m, touch, c, n, 0.0, 2.0 * _DEEPEST)
-        slots[last, DEPTH] = 1.0
+        _spot(m, touch, c, n, _DEEPEST * roundness(m, touch, c))
         return slots[last, AREA]
     _against_plane(touch, first, middle, pose_of(m, a, _NOWHERE), n, far)
     if b >= 0:

@@ -1,0 +1,72 @@
+"""One contact element: its normal force, its dashpot, its friction spring with memory.
+
+Friction is a spring with memory (Cundall & Strack 1979), capped at mu times the normal force of the element.
+"""
+
+import math
+
+from parsim.machine.jit import kernel
+
+TANGENTIAL = 2.0 / 7.0  # tangential over normal stiffness (Schaefer, Dippel & Wolf 1996)
+
+
+def restitution_of(damping):
+    """Restitution of a linear spring and dashpot of damping ratio `damping` > 0 that ends where its force would pull.
+
+    Schwager & Poeschel 2007, doi 10.1007/s10035-007-0065-z, eq. 21.
+    """
+    if damping < 1.0:
+        root = math.sqrt(1.0 - damping * damping)
+        return math.exp(-damping / root * math.atan2(2.0 * damping * root, 2.0 * damping * damping - 1.0))
+    root = math.sqrt(max(damping * damping - 1.0, 1e-12))
+    return math.exp(-damping / root * math.log((damping + root) / (damping - root)))
+
+
+def damping_of(restitution):
+    """Damping ratio that gives `restitution` (0 < e <= 1) with a force that never pulls."""
+    low, high = 0.0, 1e3
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if middle == 0.0 or restitution_of(middle) > restitution else (low, middle)
+    return low
+
+
+@kernel
+def normal_force(stiffness, dashpot, area, depth, speed):
+    """Normal force of one element, N, and its elastic part. `speed`: of parting, m/s; never pulls."""
+    elastic = stiffness * area * depth
+    return max(elastic - dashpot * area * speed, 0.0), elastic
+
+
+@kernel
+def friction_force(stretch, n, v, lapse, limit, stiffness, dashpot):
+    """(friction force, new stretch), two tuples of 3, and the elastic energy stored.
+
+    `stretch`: displacement of the contact, m, first turned into the plane across the normal `n`; `v`: relative
+    velocity, m/s, for `lapse` seconds since; `limit`: mu times the normal force, N; `stiffness`, N/m, and `dashpot`,
+    N s/m, of this element.
+    """
+    along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2]
+    vx, vy, vz = v[0] - along * n[0], v[1] - along * n[1], v[2] - along * n[2]
+    sx, sy, sz = _into_plane(stretch, n)
+    sx, sy, sz = sx + lapse * vx, sy + lapse * vy, sz + lapse * vz
+    length = math.sqrt(sx * sx + sy * sy + sz * sz)
+    if stiffness * length >= limit:
+        ratio = limit / (stiffness * length) if length > 0.0 else 0.0
+        sx, sy, sz, length = ratio * sx, ratio * sy, ratio * sz, ratio * length
+        dashpot = 0.0
+    fx, fy, fz = -stiffness * sx - dashpot * vx, -stiffness * sy - dashpot * vy, -stiffness * sz - dashpot * vz
+    size = math.sqrt(fx * fx + fy * fy + fz * fz)
+    if size > limit:
+        fx, fy, fz = fx * limit / size, fy * limit / size, fz * limit / size
+    return (fx, fy, fz), (sx, sy, sz), 0.5 * stiffness * length * length
+
+
+@kernel
+def _into_plane(s, n):
+    """The vector `s` turned into the plane across the unit vector `n`, of unchanged length."""
+    along = s[0] * n[0] + s[1] * n[1] + s[2] * n[2]
+    x, y, z = s[0] - along * n[0], s[1] - along * n[1], s[2] - along * n[2]
+    before, after = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], x * x + y * y + z * z
+    ratio = math.sqrt(before / after) if after > 0.0 else 0.0
+    return ratio * x, ratio * y, ratio * z
