@@ -54,6 +54,7 @@ def writing(out):
     return any(name.endswith(".part") for name in os.listdir(out / checkpoint.FOLDER))
 
 
+@pytest.mark.long
 def test_five_pieces_are_one_run(whole, tmp_path, started, capsys):
     out = tmp_path / "out"
 
@@ -256,6 +257,7 @@ program()
 
 @pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.slow), 2])
 @pytest.mark.parametrize("victim", [pytest.param("frames", marks=pytest.mark.slow), "checkpoints"])
+@pytest.mark.long
 def test_a_disk_that_fills_up_in_the_middle_of_a_file(small_disk, tmp_path, started, capsys, victim, ranks):
     out, code = small_disk / "out", tmp_path / "fills.py"
     code.write_text(FILLS)

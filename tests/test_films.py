@@ -39,6 +39,7 @@ def test_a_body_at_a_wall_is_not_held_there():
     assert load[2] == pytest.approx(WEIGHT, rel=SPREAD)
 
 
+@pytest.mark.long
 def test_touching_bodies_are_not_pressed_together():
     left, right = mean_load(
         [
@@ -51,13 +52,14 @@ def test_touching_bodies_are_not_pressed_together():
     assert left[2] + right[2] == pytest.approx(2 * WEIGHT, rel=SPREAD)
 
 
-@pytest.mark.parametrize("count", [2, 3])
+@pytest.mark.parametrize("count", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_touching_bodies_on_the_bed_are_lifted_too(count):
     loads = mean_load([FIXED | {"name": f"b{k}", "position": [0.14 + 0.06 * k, 0.5, 0.03]} for k in range(count)])
     assert loads[:, 2] == pytest.approx(WEIGHT, rel=2 * SPREAD)
     assert np.abs(loads[:, 0]).max() < 0.1 * 9810.0 * 0.27 * 0.06
 
 
+@pytest.mark.long
 def test_touching_bodies_do_not_drive_themselves():
     small = FIXED | {"name": "small", "position": [0.14, 0.5, 0.3]}
     large = FIXED | {"name": "large", "position": [0.23, 0.5, 0.3], "shape": {"size": [0.12, 1.0, 0.12]}}
@@ -122,6 +124,7 @@ def test_a_body_at_a_periodic_side_is_refused_by_name(x):
         simulation(POOL | {"box": sides, "bodies": [SQUARE | {"position": [x, 0.5, 0.15]}]})
 
 
+@pytest.mark.long
 def test_a_body_off_a_periodic_side_is_carried():
     sides = {"max": POOL["box"]["max"], "faces": {"x_min": "periodic", "x_max": "periodic"}}
     (load,) = mean_load([FIXED | {"position": [0.2, 0.5, 0.03]}], POOL | {"box": sides}, until=0.15)

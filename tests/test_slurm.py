@@ -92,6 +92,7 @@ def wait(happened):
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_a_job_goes_through_a_signal_and_a_lost_node_to_the_end(cluster, checkout, tmp_path, capsys):
     case = checkout / "long.toml"
     case.write_text(case.read_text() + "checkpoints = 0.005\n")

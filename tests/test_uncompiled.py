@@ -1,0 +1,22 @@
+"""The kernels' own tests with the compiler off: what numba forgives or hides, Python tells."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+OWN = ("weights", "exact", "contact_geometry", "neighbours", "bodies", "shapes", "sweeps")
+LONG = "not second_order and not add_up and not floating and not energy and not plate and not sphere_re and not rolls"
+
+
+def test_kernels_pass_their_tests_uncompiled():
+    files = [HERE / f"test_{name}.py" for name in OWN]
+    ran = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", LONG, *files],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert ran.returncode == 0, ran.stdout[-3000:]
+    assert "skipped" not in ran.stdout
