@@ -8,7 +8,7 @@ import numpy as np
 from parsim.case.model import Faces
 from parsim.geometry.rotation import from_angles, matrices, turn_of
 from parsim.solid.bodies import Bodies
-from parsim.solid.laws import FoundationLaw
+from parsim.solid.laws import DEFAULT
 from parsim.solid.shapes import BoxShape
 
 HALF, MASS, MU = (0.03625, 0.03625, 0.00975), 0.089, 0.412
@@ -39,11 +39,11 @@ class Plate:
         return 0.4
 
 
-def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), young=1e7, steps=20, **other):
+def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), young=1e7, steps=20, law=DEFAULT, **other):
     """The parts of a case that contacts read; soft materials make long sub-steps."""
     faces = dict.fromkeys([f"{a}_{s}" for a in "xyz" for s in ("min", "max")], "open") | dict.fromkeys(walls, "wall")
     material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution)
-    numbers = SimpleNamespace(steps_per_contact=steps, law=FoundationLaw())
+    numbers = SimpleNamespace(steps_per_contact=steps, law=law)
     box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=Faces(**faces | other))
     return SimpleNamespace(
         dimensions=3,

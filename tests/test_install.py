@@ -79,7 +79,20 @@ def test_a_fresh_environment_passes_a_part_of_the_tests(wanted, lowest, tmp_path
     environment |= {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PATH": f"{inside.parent}:{os.environ['PATH']}"}
     parts = [f"tests/{name}" for name in PART]
     done(
-        [inside, "-P", "-m", "pytest", "-q", *parts, "-p", "no:cacheprovider", "-m", "not long and not slow and not validate"],
+        [
+            inside,
+            "-P",
+            "-m",
+            "pytest",
+            "-q",
+            *parts,
+            "-p",
+            "no:cacheprovider",
+            "-m",
+            "not long and not slow and not validate",
+            "-m",
+            "not long and not slow and not validate",
+        ],
         cwd=work,
         env=environment,
     )

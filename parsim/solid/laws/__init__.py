@@ -2,7 +2,9 @@
 
 from parsim.case.types import choice
 from parsim.solid.laws.foundation import FoundationLaw
+from parsim.solid.laws.hertz import HertzLaw
+from parsim.solid.laws.spring import SpringLaw
 
-LAWS = (FoundationLaw,)
+LAWS = (FoundationLaw, HertzLaw, SpringLaw)
 Law = choice(*LAWS)
 DEFAULT = FoundationLaw()

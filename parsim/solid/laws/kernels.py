@@ -1,9 +1,10 @@
 """What kernels ask of a law of contact, chosen by its number."""
 
 from parsim.machine.jit import kernel
-from parsim.solid.laws import foundation
+from parsim.solid.laws import foundation, hertz, spring
 
-_stiffness_foundation = kernel(foundation.stiffness)
+_foundation, _hertz, _spring = kernel(foundation.stiffness), kernel(hertz.stiffness), kernel(spring.stiffness)
+_HERTZ, _SPRING = hertz.HertzLaw.NUMBER, spring.SpringLaw.NUMBER
 
 
 @kernel
@@ -13,4 +14,8 @@ def stiffness(law, own, area, radius, depth):
     `own`: see `LawTable.of_pair`; area that touches, m2; radius of what is round there, m, 0 for faces and edges, and
     how deep that is, m.
     """
-    return _stiffness_foundation(own, area, radius, depth)
+    if law == _HERTZ:
+        return _hertz(own, area, radius, depth)
+    if law == _SPRING:
+        return _spring(own, area, radius, depth)
+    return _foundation(own, area, radius, depth)

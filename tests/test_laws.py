@@ -1,0 +1,122 @@
+"""Laws of contact against closed forms: how deep, how long, how fast off, and that none makes energy."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from contact_cases import FLAT, HALF, MASS, boxes, budget, case, go
+
+from parsim.case.model import load
+from parsim.errors import InputError
+from parsim.geometry.rotation import from_angles
+from parsim.solid.bodies import Bodies
+from parsim.solid.contacts import Contacts
+from parsim.solid.laws import DEFAULT, LAWS
+from parsim.solid.laws.hertz import HertzLaw
+from parsim.solid.laws.law import compliance
+from parsim.solid.laws.spring import SpringLaw
+from parsim.solid.shapes import SphereShape
+
+WEIGHTLESS, YOUNG = (0.0, 0.0, 0.0), 1e7
+HERTZ, SPRING = HertzLaw(kind="hertz"), SpringLaw(kind="spring", stiffness=2e4)
+HALF_SPACE = 1.0 / compliance(*[SimpleNamespace(young=YOUNG, poisson=0.4)] * 2)
+RADIUS, SPEED = 0.025, 0.5
+
+
+def bounce(bodies, law, dt=2e-5, **options):
+    """Until it flies again: (deepest, m, time of contact, s, speed over that before, share of the budget kept)."""
+    contacts = Contacts(bodies, case(gravity=WEIGHTLESS, young=YOUNG, law=law, **options))
+    start, height, before = bodies.position[0, 2], bodies.position[0, 2], budget(bodies, contacts, WEIGHTLESS)
+    lowest, touching, lasted = height, False, 0
+    for _ in range(4000):
+        go(bodies, contacts, dt, 1)
+        lowest, touching = min(lowest, bodies.position[0, 2]), contacts.count > 0
+        lasted += touching
+        if lasted and not touching:
+            break
+    kept = budget(bodies, contacts, WEIGHTLESS) / before
+    return start - lowest, lasted * dt, bodies.velocity[0, 2] / SPEED, kept
+
+
+def ball(gap=0.0):
+    shape = SphereShape(kind="sphere", diameter=2.0 * RADIUS)
+    return Bodies([shape], [0.06], [(0.5, 0.5, RADIUS + gap)], velocity=[(0.0, 0.0, -SPEED)])
+
+
+def test_laws_stand_in_the_order_of_their_numbers():
+    assert [law.NUMBER for law in LAWS] == list(range(len(LAWS)))
+
+
+def test_a_ball_on_a_floor_is_hertz():
+    """Depth and time of contact of two half-spaces (Johnson 1985, eqs 11.23, 11.24)."""
+    deep, lasted, rebound, kept = bounce(ball(), HERTZ, restitution=1.0, steps=100)
+    exact = (15.0 * 0.06 * SPEED**2 / (16.0 * HALF_SPACE * math.sqrt(RADIUS))) ** 0.4
+    assert deep == pytest.approx(exact, rel=2e-3)
+    assert lasted == pytest.approx(2.94 * exact / SPEED, rel=0.01)
+    assert rebound == pytest.approx(1.0, abs=2e-3)
+    assert kept == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01])
+def test_a_ball_on_a_spring_swings_half_a_period(gap):
+    deep, lasted, rebound, _ = bounce(ball(gap), SPRING, restitution=1.0, steps=100)
+    assert deep - gap == pytest.approx(SPEED * math.sqrt(0.06 / 2e4), rel=2e-3)
+    assert lasted == pytest.approx(math.pi * math.sqrt(0.06 / 2e4), rel=0.02)
+    assert rebound == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.parametrize("law", [DEFAULT, HERTZ, SPRING], ids=lambda law: law.kind)
+@pytest.mark.parametrize("restitution", [0.2, 0.5, 0.85])
+@pytest.mark.parametrize("form", ["ball", "block"])
+def test_every_law_rebounds_by_the_restitution_asked_for(law, restitution, form):
+    block = Bodies(boxes(HALF), [MASS], [(0.5, 0.5, HALF[2])], quaternion=[FLAT], velocity=[(0.0, 0.0, -SPEED)])
+    rebound = bounce(ball() if form == "ball" else block, law, restitution=restitution, steps=80)[2]
+    assert rebound == pytest.approx(restitution, rel=0.02, abs=0.005)
+
+
+def test_a_face_on_a_floor_is_a_flat_punch():
+    block = Bodies(boxes(HALF), [MASS], [(0.5, 0.5, HALF[2])], velocity=[(0.0, 0.0, -SPEED)])
+    deep = bounce(block, HERTZ, restitution=1.0, steps=100)[0]
+    stiffness = 2.0 * HALF_SPACE * math.sqrt(4.0 * HALF[0] * HALF[1] / math.pi)
+    assert deep == pytest.approx(SPEED * math.sqrt(MASS / stiffness), rel=2e-3)
+
+
+@pytest.mark.parametrize("law", [HERTZ, SPRING], ids=lambda law: law.kind)
+def test_no_law_makes_energy(law):
+    touched = 0
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        count = int(random.integers(2, 5))
+        shapes = [
+            SphereShape(kind="sphere", diameter=random.uniform(0.02, 0.06))
+            if random.random() < 0.5
+            else boxes(random.uniform(0.01, 0.03, 3))[0]
+            for _ in range(count)
+        ]
+        away = random.uniform(-0.06, 0.06, (count, 3))
+        bodies = Bodies(
+            shapes,
+            [900.0 * shape.volume for shape in shapes],
+            (0.5, 0.5, 0.1) + away,
+            quaternion=[from_angles(random.uniform(-90.0, 90.0, 3)) for _ in range(count)],
+            velocity=random.normal(0.0, 0.5, (count, 3)) - 20.0 * away,
+            spin=random.normal(0.0, 10.0, (count, 3)),
+        )
+        contacts = Contacts(bodies, case(restitution=random.uniform(0.1, 1.0), law=law))
+        start = budget(bodies, contacts)
+        for step in range(40):
+            contacts.step(bodies, np.zeros((count, 6)), step * 5e-4, min(5e-4, contacts.limit()))
+            held = bodies.kinetic_energy() + bodies.potential_energy((0.0, 0.0, -9.81)) + contacts.elastic_energy()
+            assert held <= start + 1e-6 * abs(start) + 1e-9, (seed, step)
+        touched += contacts.dissipated > 0.0
+    assert touched > 30
+
+
+def test_a_law_is_chosen_in_the_case():
+    name = "cases/floating_block/block.toml"
+    assert load(name, ['contacts.law={kind="spring", stiffness=1e5}']).contacts.law.stiffness == 1e5
+    with pytest.raises(InputError, match="contacts.law.stiffness: missing; stiffness of a contact, N/m"):
+        load(name, ['contacts.law={kind="spring"}'])
+    with pytest.raises(InputError, match="must be 'foundation', 'hertz' or 'spring'"):
+        load(name, ['contacts.law={kind="herz"}'])
