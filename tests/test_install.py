@@ -90,8 +90,6 @@ def test_a_fresh_environment_passes_a_part_of_the_tests(wanted, lowest, tmp_path
             "no:cacheprovider",
             "-m",
             "not long and not slow and not validate",
-            "-m",
-            "not long and not slow and not validate",
         ],
         cwd=work,
         env=environment,
