@@ -111,7 +111,6 @@ def resume(
     """Go on with a run from its newest whole checkpoint, on any number of ranks, to the same bits."""
     from parsim.case.load import load
     from parsim.domain.comm import Comm
-    from parsim.machine import variant
     from parsim.output import folder as folders
     from parsim.run.resume import find
 
@@ -126,16 +125,20 @@ def resume(
     with folders.Folder(out, Comm()) as folder:
         folder.take()
         found = folder.comm.first(find, out, until, kernel, wanted)
-        if found is None:
-            return exits.DONE
-        if found.kernel:
-            os.environ[variant.NAME] = variant.checked(found.kernel)
-        from parsim.run.warm import prepare
+        return exits.DONE if found is None else _gone_on(found, folder, limit)
 
-        prepare()
-        from parsim.run.loop import resume as solve
 
-        return solve(found, folder, limit)
+def _gone_on(found, folder, limit):
+    from parsim.machine import variant
+
+    if found.kernel:
+        os.environ[variant.NAME] = variant.checked(found.kernel)
+    from parsim.run.warm import prepare
+
+    prepare()
+    from parsim.run.loop import resume as solve
+
+    return solve(found, folder, limit)
 
 
 def _settings(threads, kernel, walltime):

@@ -230,7 +230,7 @@ def test_aligned_corners_hardly_feel_each_other():
     bodies = blocks([(0.5, 0.5, 0.5), (0.5 + 2 * HALF[0] - 1e-7, 0.5 + 2 * HALF[1] - 1e-7, 0.5)])
     contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0)))
     contacts.step(bodies, np.zeros((2, 6)), 0.0, 2e-4)
-    whole = contacts._law[0, 0, 0] * 4 * HALF[0] * HALF[2] * 1e-7
+    whole = contacts._pair_law[0, 0, 0] * 4 * HALF[0] * HALF[2] * 1e-7
     assert np.abs(bodies.contact_load).max() < 1e-3 * whole
 
 

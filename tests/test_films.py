@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_water import POOL, SQUARE, TANK, simulation
 
-from parsim.coupling.films import gap_to_plane
+from parsim.coupling.gaps import gap_to_plane
 from parsim.errors import InputError
 from parsim.geometry.nearby import near_bodies
 from parsim.solid.shapes import BoxShape

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from parsim.case.model import parse
-from parsim.coupling.samples import added_inertia
+from parsim.coupling.response import added_inertia
 from parsim.domain.comm import Comm
 from parsim.geometry.rotation import from_angles, matrices
 from parsim.particles.tables import Vectors

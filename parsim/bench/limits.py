@@ -61,9 +61,23 @@ def sweeps(simulation: Simulation, calls: int) -> dict[str, float]:
     pairs = int(count.sum())
     listed = int((near.end - near.start)[near.fluid].sum())
     close = lists._replace(index=_neighbours_in_cache(near, p))
+    momentum, continuity, scratch = _passes(p, at, lattice, scheme.close2)
+    works = {
+        "momentum": lambda: momentum(lists),
+        "continuity": lambda: continuity(lists),
+        "momentum_in_cache": lambda: momentum(close),
+        "continuity_in_cache": lambda: continuity(close),
+        "gathers": lambda: gathers(at, lists, place, velocity, p.n, p.p, scratch),
+        "lists": lambda: near.build(domain, simulation.models.reach),
+    }
+    return {name: 1e9 * _least(work, calls) / pairs for name, work in works.items()} | {"listed": listed / pairs}
+
+
+def _passes(p, at, lattice, close2):
+    """The momentum and the continuity sweep as functions of the lists, and an array that is written over."""
     out = [np.zeros(len(p)) for _ in range(12)]
     one, two, three = (Vectors(*out[k : k + 3]) for k in (0, 3, 6))
-    forces = tables.Forces(lattice.own, lattice.whole, scheme.close2, 1.0, 1.0, 1.0, 1.0, 1.0)
+    forces = tables.Forces(lattice.own, lattice.whole, close2, 1.0, 1.0, 1.0, 1.0, 1.0)
     growth = tables.Growth(
         lattice.number, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5 * lattice.spacing, float(lattice.dimensions)
     )
@@ -93,15 +107,7 @@ def sweeps(simulation: Simulation, calls: int) -> dict[str, float]:
             change,
         )
 
-    works = {
-        "momentum": lambda: momentum(lists),
-        "continuity": lambda: continuity(lists),
-        "momentum_in_cache": lambda: momentum(close),
-        "continuity_in_cache": lambda: continuity(close),
-        "gathers": lambda: gathers(at, lists, place, velocity, p.n, p.p, out[0]),
-        "lists": lambda: near.build(domain, simulation.models.reach),
-    }
-    return {name: 1e9 * _least(work, calls) / pairs for name, work in works.items()} | {"listed": listed / pairs}
+    return momentum, continuity, out[0]
 
 
 def _neighbours_in_cache(near, p):

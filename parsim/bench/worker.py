@@ -18,7 +18,7 @@ import numpy as np
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
 from parsim.geometry.faces import repeats
-from parsim.run.warm import exercise, prepare
+from parsim.run.warm import PARTS, exercise, prepare
 
 _WARM = 5  # steps
 _CALLS = 7  # of a single sweep; the fastest counts
@@ -34,7 +34,7 @@ def measure(order: dict[str, Any]) -> dict[str, Any]:
     from parsim.run.simulation import Simulation
 
     if order.get("warm", _WARM):
-        exercise()  # machine code is in memory before the particles are
+        exercise(PARTS[0])  # machine code is in memory before the particles are
     before = _resident()
     simulation = Simulation(case, comm)
     with tempfile.TemporaryDirectory() as folder:

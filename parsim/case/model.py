@@ -15,6 +15,7 @@ from parsim.boundary.sides import OPEN, WALL, Side
 from parsim.case.checks import checked, doubts
 from parsim.case.file import read, replaced, written
 from parsim.case.messages import validated
+from parsim.case.output import Output, Report
 from parsim.case.types import (
     Count,
     Moderate,
@@ -31,7 +32,6 @@ from parsim.case.types import (
 )
 from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
-from parsim.observe.sensors import Sensor
 from parsim.solid.laws import DEFAULT as FOUNDATION
 from parsim.solid.laws import Law
 from parsim.solid.shapes import Shape
@@ -143,29 +143,6 @@ class Run(Table):
     )
     patience: Positive = Field(600.0, description="wall time without progress after which a rank is taken for hung, s")
     balance_every: Count = Field(1, description="rebuilds between looks at the balance of the ranks")
-
-
-class Output(Table):
-    """What is written, and when."""
-
-    frames: Positive = Field(0.05, description="time between frames, s")
-    series: Positive = Field(0.005, description="time between rows of the series, s")
-    sensors: tuple[Sensor, ...] = Field((), description="what is measured at places")
-    checkpoints: Positive = Field(15.0, description="wall time between checkpoints, minutes; the last two are kept")
-    milestones: Positive | None = Field(
-        None, description="time between checkpoints that are kept for good, s; left out: none"
-    )
-
-
-class Report(Table):
-    """What the page of a run shows; without times the thirds of the run."""
-
-    snapshots: tuple[Number, ...] = Field((), description="times of the pictures, s")
-    profiles: tuple[Number, ...] = Field((), description="times of the water's profiles, s")
-    places: tuple[Number, ...] = Field((), description="times at which the places of the bodies are told, s")
-    alike_until: Positive | None = Field(
-        None, description="time until which repeated experiments are alike, s; left out: the end of the run"
-    )
 
 
 class Case(Table):

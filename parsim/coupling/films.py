@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from parsim.coupling.gaps import Bodies, gap_ahead
 from parsim.fluid.weights.choice import weight_at
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.nearby import near_bodies
-from parsim.geometry.rotation import matrices, to_body, to_global
+from parsim.geometry.rotation import matrices, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY
-from parsim.solid.shapes.kernels import ahead
 
 _NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
 _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
@@ -38,19 +38,6 @@ class Patches(NamedTuple):
     row: np.ndarray
     patch: np.ndarray
     body: np.ndarray
-
-
-class Bodies(NamedTuple):
-    """Centre (b, 3), turn (b, 9), shape (b,), half (b, 3) of the bodies; others[first[b]:first[b + 1]] are near b;
-    period, m."""
-
-    centre: np.ndarray
-    turn: np.ndarray
-    shape: np.ndarray
-    half: np.ndarray
-    first: np.ndarray
-    others: np.ndarray
-    period: float
 
 
 class Water(NamedTuple):
@@ -151,45 +138,6 @@ def _layers(lattice):
     points = [(w, r, up / lattice.spacing) for w, _, r, up in lattice.points() if up > 0.5 * lattice.spacing]
     first = math.fsum(w for w, _, up in points if up < 1.5)
     return first, math.fsum(w * up * (lattice.spacing / r) ** 2 for w, r, up in points)
-
-
-@kernel
-def gap_to_plane(x, n, plane):
-    """Distance along the direction n (3,) from x (3,) to a wall in front of it; inf where it faces away or ends."""
-    along = -(n[0] * plane[0] + n[1] * plane[1] + n[2] * plane[2])
-    if along <= 0.5:
-        return np.inf
-    gap = (x[0] * plane[0] + x[1] * plane[1] + x[2] * plane[2] - plane[3]) / along
-    for k in range(3):
-        if not plane[4 + k] <= x[k] + (gap * n[k] if plane[k] == 0.0 else 0.0) <= plane[7 + k]:
-            return np.inf
-    return gap
-
-
-@kernel
-def gap_ahead(x, n, b, solids, spacing):
-    """Distance from x (3,) on body `b` along n (3,) to the nearest wall, gate or other body; inf where there is none.
-
-    `solids`: Bodies, the walls' planes, and the gate (4,): its low and high x, the height of its lower edge, and 1
-    where there is one.
-    """
-    bodies, planes, gate = solids
-    centre, turn, shape, half, first, others, period = bodies
-    gap = np.inf
-    for w in range(len(planes)):
-        gap = min(gap, gap_to_plane(x, n, planes[w]))
-    if gate[3] > 0.0 and x[2] >= gate[2]:
-        level, side = (gate[0], 1.0) if centre[b, 0] < 0.5 * (gate[0] + gate[1]) else (gate[1], -1.0)
-        if n[0] * side > 0.5:
-            gap = min(gap, (level - x[0]) * side / (n[0] * side))
-    for d in others[first[b] : first[b + 1]]:
-        dx = x[0] - centre[d, 0]
-        if period < np.inf:
-            dx -= period * np.rint(dx / period)
-        place = to_body(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
-        along = to_body(turn[d], n[0], n[1], n[2])
-        gap = min(gap, ahead(shape[d], place, along, (half[d, 0], half[d, 1], half[d, 2]), spacing))
-    return gap
 
 
 @kernel

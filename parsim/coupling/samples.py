@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from parsim.coupling.response import added_inertia, levers, respond
 from parsim.errors import InputError
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
@@ -210,58 +211,3 @@ def expel(at, lists, body, motion, shapes, way_out, kinematics):
             u[i] += more * nx
             v[i] += more * ny
             w[i] += more * nz
-
-
-@kernel
-def levers(at, body, place, centre, force, out):
-    """Force and torque about the body's centre of each sample `at`: rows of out (n, 6)."""
-    x, y, z = place
-    for row in range(at.size):
-        i = at[row]
-        b = body[i]
-        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
-        fx, fy, fz = force[row]
-        out[row, 0], out[row, 1], out[row, 2] = fx, fy, fz
-        out[row, 3] = dy * fz - dz * fy
-        out[row, 4] = dz * fx - dx * fz
-        out[row, 5] = dx * fy - dy * fx
-
-
-@kernel
-def added_inertia(at, body, place, centre, response, out):
-    """J^T S J of each sample `at`, S its `response`, J = (1, -[r]): upper triangles by rows of out (n, 24)."""
-    x, y, z = place
-    j, s, sj = np.zeros((3, 6)), np.zeros((3, 3)), np.zeros((3, 6))
-    j[0, 0] = j[1, 1] = j[2, 2] = 1.0
-    for row in range(at.size):
-        i = at[row]
-        b = body[i]
-        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
-        j[0, 4], j[0, 5], j[1, 3], j[1, 5], j[2, 3], j[2, 4] = dz, -dy, -dz, dx, dy, -dx
-        s[0, 0], s[0, 1], s[0, 2], s[1, 1], s[1, 2], s[2, 2] = response[row]
-        s[1, 0], s[2, 0], s[2, 1] = s[0, 1], s[0, 2], s[1, 2]
-        for e in range(3):
-            for c in range(6):
-                sj[e, c] = s[e, 0] * j[0, c] + s[e, 1] * j[1, c] + s[e, 2] * j[2, c]
-        k = 0
-        for a in range(6):
-            for c in range(a, 6):
-                out[row, k] = j[0, a] * sj[0, c] + j[1, a] * sj[1, c] + j[2, a] * sj[2, c]
-                k += 1
-        out[row, 21:] = 0.0
-
-
-@kernel
-def respond(at, body, place, centre, change, lever, p):
-    """Pressure p of the samples `at` after the `change` (bodies, 6) of their bodies' accelerations; lever (n, 3)."""
-    x, y, z = place
-    for row in range(at.size):
-        i = at[row]
-        b = body[i]
-        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
-        c = change[b]
-        p[i] += (
-            lever[row, 0] * (c[0] + c[4] * dz - c[5] * dy)
-            + lever[row, 1] * (c[1] + c[5] * dx - c[3] * dz)
-            + lever[row, 2] * (c[2] + c[3] * dy - c[4] * dx)
-        )

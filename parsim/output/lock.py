@@ -61,6 +61,10 @@ class Lock:
                     )
                 seen = sign
                 time.sleep(LOOK)
+        self._note(self._file)
+
+    def _note(self, file):
+        """Write down who has the lock."""
         self._text = json.dumps(
             {
                 "host": platform.node(),
@@ -69,9 +73,9 @@ class Lock:
                 "since": datetime.now(UTC).isoformat(timespec="microseconds"),
             }
         )
-        self._file.truncate(0)
-        self._file.write(self._text)
-        self._file.flush()
+        file.truncate(0)
+        file.write(self._text)
+        file.flush()
 
     @property
     def mine(self) -> bool:

@@ -64,12 +64,17 @@ def find(
     if until is not None:
         _check_end(found, until, wanted is None)
         data["run"]["until"] = until
-    if kernel is None and kernel_used is not None and kernel_used not in variant.possible():
+    if kernel is None and kernel_used is not None:
+        _check_kernel(folder, kernel_used)
+    return Found(parse(data), found, name, kernel or kernel_used)
+
+
+def _check_kernel(folder, used):
+    if used not in variant.possible():
         raise InputError(
-            f"{folder}: computed with kernel variant {kernel_used}, which this processor does not have; "
+            f"{folder}: computed with kernel variant {used}, which this processor does not have; "
             f"with --kernel the run goes on to other last bits; possible: {', '.join(variant.possible())}"
         )
-    return Found(parse(data), found, name, kernel or kernel_used)
 
 
 def _ends(run, until):

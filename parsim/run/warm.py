@@ -1,4 +1,4 @@
-"""Compiles the kernels once per machine, version and variant, in a process of its own, before any rank needs them.
+"""Compiles the kernels once per machine, version and variant, in processes of their own, before any rank needs them.
 
 Numba's machine code of a reordered sum is not the same in the process that compiled it as in those that load it from
 the cache: the last bit of a result would tell a first run from a second, and one rank from another. So no run uses
@@ -21,6 +21,7 @@ from parsim.errors import InputError
 from parsim.launch import mpirun
 from parsim.machine import variant
 
+PARTS = "water", "solids"  # compiled side by side
 PATIENCE = 900.0  # s that a rank waits for another one's compiler
 _FOREIGN = ("OMPI_", "PMIX", "PMI_", "PRTE", "SLURM_")  # the compiler is no rank of the job
 _LOCAL = ("OMPI_COMM_WORLD_LOCAL_RANK", "SLURM_LOCALID", "MPI_LOCALRANKID")
@@ -86,14 +87,19 @@ def _compile_alone(mark):
     for path in _code(mark.parent):  # a compiler that was killed may have left half a file
         path.unlink()
     environment = {key: text for key, text in os.environ.items() if not key.startswith(_FOREIGN)}
-    # in a process group of its own: mpirun sends signals to all of a rank's
-    subprocess.run(
-        [sys.executable, "-P", "-m", "parsim.run.warm"],
-        env=environment,
-        check=True,
-        process_group=0,
-        preexec_fn=mpirun.die_with_parent,
-    )
+    # in process groups of their own: mpirun sends signals to all of a rank's
+    workers = [
+        subprocess.Popen(
+            [sys.executable, "-P", "-m", "parsim.run.warm", part],
+            env=environment,
+            process_group=0,
+            preexec_fn=mpirun.die_with_parent,
+        )
+        for part in PARTS
+    ]
+    for worker in workers:
+        if worker.wait():
+            raise subprocess.CalledProcessError(worker.returncode, worker.args)
     sums = {str(path.relative_to(mark.parent)): _sum(path) for path in _code(mark.parent)}
     draft = mark.with_suffix(f".{os.getpid()}")
     draft.write_text(json.dumps(sums), encoding="utf-8")
@@ -137,16 +143,23 @@ def _chosen():
     return name
 
 
-def exercise() -> None:
-    """Run a small case with everything in it for a few steps, which compiles and caches, or loads, every kernel."""
+def exercise(part: str) -> None:
+    """Run small cases with everything in them for a few steps, which compiles and caches, or loads, every kernel.
+
+    The parts run side by side and begin with different kernels: what one has compiled the other loads.
+    """
     from parsim.case.model import parse
     from parsim.domain.comm import Comm
     from parsim.fluid.weights import WEIGHTS
     from parsim.observe.observers import rows_now
     from parsim.run.simulation import Simulation
 
-    weights = [_CASE | {"water": _CASE["water"] | {"scheme": {"weight": name}}} for name in WEIGHTS]
-    for data in (*weights, _CASE | _PERIODIC):
+    if part == "solids":
+        _touch(parse(_CASE))
+        cases = [_CASE | {"water": _CASE["water"] | {"scheme": {"weight": name}}} for name in WEIGHTS]
+    else:
+        cases = [_CASE, _CASE | _PERIODIC]
+    for data in cases:
         case = parse(data)
         simulation = Simulation(case, Comm())
         for _ in range(3):
@@ -154,5 +167,36 @@ def exercise() -> None:
         rows_now(case, simulation)
 
 
+def _touch(case):
+    """One step of the bodies and the gate of a case without water."""
+    import numpy as np
+
+    from parsim.boundary.gate import Gate
+    from parsim.solid.bodies import from_case
+    from parsim.solid.contacts import Contacts
+
+    bodies = from_case(case)
+    contacts = Contacts(bodies, case, [Gate(case)])
+    contacts.step(bodies, np.zeros((len(bodies), 6)), 0.0, 1e-4)
+    contacts.elastic_energy()
+
+
+def _save_one_at_a_time():
+    """Let no other process save machine code meanwhile: numba reads an index, adds to it and writes it back."""
+    from numba.core.caching import IndexDataCacheFile
+
+    save = IndexDataCacheFile.save
+
+    def locked(self, key, data):
+        with open(Path(os.environ["NUMBA_CACHE_DIR"], "saving"), "w") as file:
+            with suppress(OSError):  # where the file system has no locks
+                fcntl.flock(file, fcntl.LOCK_EX)
+            save(self, key, data)
+
+    IndexDataCacheFile.save = locked
+
+
 if __name__ == "__main__":
-    exercise()
+    variant.apply()
+    _save_one_at_a_time()
+    exercise(sys.argv[1])
