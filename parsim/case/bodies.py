@@ -60,7 +60,7 @@ def _body(case, body):
     if (body.density is None) == (body.mass is None):
         given = "none is" if body.mass is None else f"density = {body.density!r} and mass = {body.mass!r} are"
         yield f"density, mass: exactly one must be given, {given}"
-    if particles_across(case, body) < 2:
+    if case.water.scheme.WET and particles_across(case, body) < 2:
         yield (
             f"{body.shape.told()}: thinner than two particles at spacing = {case.spacing!r}; "
             f"its thinnest side {thinnest(case, body)!r} m must be at least 1.5 spacings"
@@ -100,7 +100,7 @@ def _outside(case, body):
 
 def speeds(case):
     """Nothing solid starts or is driven as fast as the sound of the model."""
-    if case.speed <= 0.0:
+    if case.sound_speed <= 0.0:
         return []
     found = [(f"bodies.{body.name}.velocity, spin", _fastest(case, body)) for body in case.bodies]
     if case.gate:

@@ -6,11 +6,15 @@ from fractions import Fraction
 from parsim.case import bodies
 from parsim.case import fill as fills
 from parsim.errors import InputError
+from parsim.fluid import DRY
 
 
 def checked(case, messages):
     """`case` completed. Raises InputError with `messages` and everything else that is wrong."""
     case, faults = _completed(case)
+    if case.spacing is None:
+        missing = "spacing: missing; particle spacing l0, m; required where there is water"
+        raise InputError([*messages, *faults, missing])
     of_bodies = (
         bodies.names,
         bodies.materials,
@@ -20,7 +24,7 @@ def checked(case, messages):
         bodies.gate,
         bodies.sensors,
     )
-    for check in (_spacing, _box, _faces, fills.faults, _speed, *of_bodies):
+    for check in (_spacing, _box, _faces, _water, fills.faults, _speed, *of_bodies):
         faults += check(case)
     if messages or faults:
         raise InputError([*messages, *faults])
@@ -30,7 +34,7 @@ def checked(case, messages):
 def doubts(case):
     """What is allowed but doubtful: a list of messages, one for all bodies of one kind."""
     thin = {}
-    for body in case.bodies:
+    for body in case.bodies if case.water.scheme.WET else ():
         if (across := bodies.particles_across(case, body)) < 4:
             thin.setdefault((across, bodies.thinnest(case, body)), []).append(body.name)
     told = [
@@ -69,6 +73,10 @@ def _completed(case):
     update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"sensors": sensors})}
     if case.gate and case.gate.bottom is None:
         update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})
+    if not case.water.fill and not {"scheme", "speed"} & case.water.model_fields_set:
+        update["water"] = case.water.model_copy(update={"scheme": DRY})
+    if case.spacing is None and not update.get("water", case.water).scheme.WET:
+        update["spacing"] = 0.5 * min((bodies.thinnest(case, body) for body in case.bodies), default=max(case.box.size))
     if case.wall_material is None:
         update["wall_material"] = next(iter(case.materials), None)
     return case.model_copy(update=update), faults
@@ -94,13 +102,22 @@ def _floated(case, body):
 
 
 def _spacing(case):
-    """The spacing divides every edge of the box along which things move."""
+    """The spacing divides every edge of the box along which things move, where there are particles."""
+    if not case.water.scheme.WET:
+        return []
     edges = {"xyz"[axis]: case.box.size[axis] for axis in case.axes if case.box.size[axis] > 0}
     wrong = [name for name, edge in edges.items() if not _divides(case.spacing, edge)]
     if not wrong:
         return []
     listed = ", ".join(f"{name} = {edges[name]:.10g}" for name in wrong)
     return [f"spacing = {case.spacing!r}: does not divide box {listed} m; {_nearest_spacings(case)}"]
+
+
+def _water(case):
+    """A scheme without water has none to move."""
+    if case.water.fill and not case.water.scheme.WET:
+        return ['water.scheme.kind = "none": there is water, water.fill; leave the scheme out, or the fill']
+    return []
 
 
 def _divides(spacing, edge):
@@ -156,7 +173,7 @@ def _faces(case):
 
 
 def _speed(case):
-    if case.water.speed is None and case.speed <= 0:
+    if case.water.speed is None and case.sound_speed <= 0:
         lacking = "gravity" if case.water.fill else "fill"
         return [f"water.speed: missing; the largest expected speed, m/s, is required in a case without {lacking}"]
     return []

@@ -34,6 +34,9 @@ class Estimate:
 
 def estimate(case):
     """The cost of a case. Active are water, bodies, and walls and gate up to the highest level of the fill."""
+    if not case.water.scheme.WET:
+        dt = time_step(case)
+        return Estimate(0, 0, 0, 0, 0, 0.0, math.ceil((case.run.until - case.start) / dt), dt)
     layers = case.layers
     wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
     water, gate = round(_water(case)), _gate(case, layers)

@@ -150,7 +150,9 @@ class Case(Table):
 
     title: str = Field("", description="one line for people")
     dimensions: Literal[2, 3] = Field(description="2 (the x-z plane, one metre wide) or 3")
-    spacing: Real = Field(ge=1e-6, le=1e6, description="particle spacing l0, m; must divide the box")
+    spacing: Annotated[Real, Field(ge=1e-6, le=1e6)] | None = Field(
+        None, description="particle spacing l0, m; must divide the box; left out without water: half the thinnest body"
+    )
     gravity: Vector = Field((0.0, 0.0, -9.81), description="gravity, m/s2")
     wall_material: Name | None = Field(None, description="material of walls and gate; left out: the first material")
     box: Box = Field(description="the box that holds everything")
@@ -182,8 +184,8 @@ class Case(Table):
 
     @property
     def sound_speed(self):
-        """Speed of sound of the water model, c0, m/s."""
-        return self.water.scheme.sound * self.speed
+        """Speed of sound of the water model, c0, m/s; inf without water."""
+        return self.water.scheme.sound_speed(self.speed)
 
     @property
     def layers(self):

@@ -1,6 +1,7 @@
 """Water on bodies, bodies on water: the samples that a body shows to the water, and the loads they bring back."""
 
 import functools
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +39,8 @@ class BodySamples:
 
     def __init__(self, case, bodies, layers, units):
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
-        self._used, self._way_out = np.isin(range(3), case.axes), _WAY_OUT * case.spacing / case.speed
+        self._used = np.isin(range(3), case.axes)
+        self._way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
         self._units = units
         sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
         self.of_body = [sampled(shape) for shape in bodies.shapes]

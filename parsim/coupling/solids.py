@@ -26,11 +26,14 @@ class Solids:
         self.gate = Gate(case) if case.gate is not None else None
         self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [])
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
-        self._load = None  # of the water in this step, (bodies, 6)
+        self._wet = case.water.scheme.WET
+        self._load = np.zeros((len(self.bodies), 6))  # of the water in this step
 
     @property
     def sources(self):
-        """What gives the domain samples at a rebuild."""
+        """What gives the domain samples at a rebuild: nothing where there is no water to see them."""
+        if not self._wet:
+            return []
         return [source for source in (self.samples, self._gate_samples, self.walls) if source is not None]
 
     @property
@@ -40,7 +43,7 @@ class Solids:
 
     def find(self, flow):
         """Note, after a rebuild, which of this rank's particles are near bodies."""
-        if len(self.bodies):
+        if self.pushed():
             self.samples.find(flow.domain, flow.near)
             self.films.find(flow.domain)
 
@@ -49,8 +52,8 @@ class Solids:
         self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
 
     def pushed(self):
-        """Whether there are bodies for the water to push."""
-        return len(self.bodies) > 0
+        """Whether there is water, and bodies for it to push."""
+        return self._wet and len(self.bodies) > 0
 
     def push(self, flow, reaction, time, dt):
         """Give the bodies, and their samples, the accelerations that the water's load gives them; see `Scheme`."""
@@ -74,8 +77,9 @@ class Solids:
     def advance(self, flow, time, dt):
         """Move the bodies over `dt`, s, under what has pushed them, and place the samples there."""
         if len(self.bodies):
-            with self.timers("move"):
-                self.samples.keep_out(flow.particles, flow.near, *self.bodies.drifted(0.5 * dt))
+            if self._wet:
+                with self.timers("move"):
+                    self.samples.keep_out(flow.particles, flow.near, *self.bodies.drifted(0.5 * dt))
             with self.timers("contacts"):
                 self.contacts.step(self.bodies, self._load, time, dt)
                 self.bodies.velocity *= flow.keep

@@ -47,7 +47,7 @@ def collapsed(simulation: Simulation, dt: float) -> RunError | None:
     if dt > _COLLAPSED * s.scheme.time_step(0.0):
         return None
     text = f"{_when(s)}: the time step has come down to {dt:.3g} s, for "
-    if s.contacts.limit() <= dt or s.speed > s.case.speed:
+    if s.contacts.limit() <= dt or s.speed > s.case.speed > 0.0:
         name, speed = s.bodies.fastest()
         text += f"body {name} moves at {speed:.4g} m/s. "
     else:
@@ -87,7 +87,7 @@ def _likely(simulation):
     signs = []
     if s.step_count < _EARLY:
         signs.append(start)
-    if case.speed < s.speed < s.scheme.sound:
+    if 0.0 < case.speed < s.speed < s.scheme.sound:
         signs.append(f"{speed}: {s.speed:.4g} m/s in the step before")
     if b.names:
         kick = np.sqrt((b.contact_load[:, :3] ** 2).sum(1)) / b.mass * s.dt
@@ -99,6 +99,7 @@ def _likely(simulation):
             )
     if case.run.cfl > 1.0:
         signs.append(step)
-    others = [text for text in (speed, start, step) if not any(sign.startswith(text) for sign in signs)]
+    possible = (speed, start, step) if case.speed else (start, step)
+    others = [text for text in possible if not any(sign.startswith(text) for sign in signs)]
     first = f"Most likely {'; or '.join(signs)}. Else " if signs else "Most likely "
     return f"{first}{'; or '.join(others)}. The frame written now shows the place"

@@ -1,6 +1,6 @@
 """What a case may say of the weakly compressible scheme."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -10,6 +10,8 @@ from parsim.fluid.wcmps.fields import FIELDS
 
 class Settings(Table):
     """Weakly compressible moving particles (Mellado 2021, ch. 5)."""
+
+    WET: ClassVar[bool] = True
 
     kind: Literal["wcmps"] = Field("wcmps", description="weakly compressible moving particles")
     sound: Real = Field(10.0, ge=5, le=1000, description="speed of sound over the largest expected speed")
@@ -32,6 +34,10 @@ class Settings(Table):
     def fields(self):
         """The fields of particles, those of every scheme with them."""
         return FIELDS
+
+    def sound_speed(self, speed):
+        """Speed of sound, m/s, where `speed`, m/s, is the largest expected one."""
+        return self.sound * speed
 
     def doubts(self):
         """What is allowed but doubtful, messages: a support with which water at rest does not stay so (2D, 1 s)."""

@@ -1,0 +1,1 @@
+"""No water at all: bodies alone."""
