@@ -96,6 +96,8 @@ BODY = """[[bodies]]
 name = "{}"
 shape = {{ kind = "box", size = [0.0725, 0.0725, 0.0195] }}
 density = 868.0
+material = "plastic"
+position = [0.05, 0.05, 0.1]
 """
 REFERENCE = """# Made up.
 case,block,quantity,low,high,model,unit,time,source

@@ -143,7 +143,7 @@ def test_check_prints_the_estimate_and_warnings(capsys):
 
 @pytest.mark.parametrize("name", ["ice_release/4_blocks_dry", "ice_release/9_blocks_50mm", "floating_square/half"])
 def test_estimate_counts_what_is_built(name):
-    from parsim.boundary.wall import Walls
+    from parsim.boundary.wall_samples import Walls
     from parsim.coupling.samples import BodySamples
     from parsim.fluid.wcmps.scheme import WCMPS
     from parsim.run.fill import water

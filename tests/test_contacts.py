@@ -10,7 +10,7 @@ from parsim.geometry.rotation import from_angles
 from parsim.solid import contacts as contacts_module
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
-from parsim.solid.element import damping_of
+from parsim.solid.laws.law import damping_of
 from parsim.solid.shapes import elements_of
 
 

@@ -20,6 +20,7 @@ from parsim.solid.shapes import SphereShape
 
 WEIGHTLESS, YOUNG = (0.0, 0.0, 0.0), 1e7
 HERTZ, SPRING = HertzLaw(kind="hertz"), SpringLaw(kind="spring", stiffness=2e4)
+LAWS_HERE = DEFAULT, HERTZ, SPRING
 HALF_SPACE = 1.0 / compliance(*[SimpleNamespace(young=YOUNG, poisson=0.4)] * 2)
 RADIUS, SPEED = 0.025, 0.5
 
@@ -113,10 +114,42 @@ def test_no_law_makes_energy(law):
     assert touched > 30
 
 
+@pytest.mark.parametrize("law", LAWS_HERE, ids=lambda law: law.kind)
+def test_a_narrow_contact_is_soft_whatever_the_law(law):
+    """Boxes that overlap by 10 um sideways hardly feel each other, and rest on 1 mm without a jump."""
+    forces = []
+    for across in (0.03, 1e-5):
+        bodies = Bodies(
+            boxes(*[(0.02, 0.02, 0.02)] * 2),
+            [0.1] * 2,
+            [(0.5, 0.5, 0.5), (0.54 - across, 0.5, 0.5399)],
+            fixed=[True, False],
+            velocity=[(0.0, 0.0, 0.0), (0.0, 0.0, -0.5)],
+        )
+        contacts = Contacts(bodies, case(gravity=WEIGHTLESS, young=YOUNG, law=law))
+        contacts.step(bodies, np.zeros((2, 6)), 0.0, 1e-6)
+        forces.append(bodies.contact_load[1, 2])
+    assert forces[0] > 0.0 and forces[1] < 2e-3 * forces[0]
+    bodies = Bodies(
+        boxes(*[(0.02, 0.02, 0.02)] * 3),
+        [0.1] * 3,
+        [(0.461, 0.5, 0.5), (0.539, 0.5, 0.5), (0.5, 0.5, 0.54)],
+        fixed=[True, True, False],
+    )
+    contacts = Contacts(bodies, case(restitution=0.3, young=1e8, law=law))
+    go(bodies, contacts, 1e-4, 3000)
+    assert bodies.position[2, 2] == pytest.approx(0.54, abs=6e-4), "no more than springs as soft let it"
+    assert np.abs(bodies.velocity[2]).max() < 1e-3
+
+
 def test_a_law_is_chosen_in_the_case():
     name = "cases/floating_block/block.toml"
     assert load(name, ['contacts.law={kind="spring", stiffness=1e5}']).contacts.law.stiffness == 1e5
     with pytest.raises(InputError, match="contacts.law.stiffness: missing; stiffness of a contact, N/m"):
         load(name, ['contacts.law={kind="spring"}'])
-    with pytest.raises(InputError, match="must be 'foundation', 'hertz' or 'spring'"):
-        load(name, ['contacts.law={kind="herz"}'])
+    assert load(name, ["contacts.law=hertz"]).contacts.law == HERTZ
+    for wrong in ('{kind="herz"}', "herz", "3"):
+        with pytest.raises(InputError, match="must be 'foundation', 'hertz' or 'spring'"):
+            load(name, [f"contacts.law={wrong}"])
+    with pytest.raises(InputError, match="contacts.law.stiffness: belongs to kind = 'spring'; allowed: kind, depth"):
+        load(name, ["contacts.law={stiffness=1e5}"])

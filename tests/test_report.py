@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 
 import fake_run
 import numpy as np
@@ -15,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 import parsim
+from parsim.__main__ import main
 from parsim.errors import InputError, WriteError
 from parsim.output import series
 from parsim.report import animation, measures, painter, pictures, scene
@@ -117,6 +119,14 @@ def test_the_painter_puts_things_where_they_are(run):
     assert block[0] > block[2] + 0.2 and block[3] == 1
     assert air[3] == 0
     assert np.ptp(gate[:3]) < 0.1 and gate[3] > 0.3
+
+
+def test_spheres_without_water_have_a_page(tmp_path):
+    case = Path(__file__).parents[1] / "cases" / "bouncing_sphere" / "sphere.toml"
+    assert main(["run", str(case), "-o", str(tmp_path / "out"), "--until", "0.05"]) == 0
+    assert main(["report", str(tmp_path / "out")]) == 0
+    text = (tmp_path / "out" / "report" / "index.html").read_text()
+    assert "Trajectories of the bodies" in text and "Front" not in text and "Volume and particles" not in text
 
 
 def test_the_gate_rises_at_its_speed():

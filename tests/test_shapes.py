@@ -94,9 +94,10 @@ def test_volume_reach_and_inertia_are_those_of_the_surface(shape):
 @pytest.mark.parametrize("shape", GIVEN, ids=str)
 def test_patches_cover_the_surface(shape):
     s = shape.samples(0.02, 0.06, False)
-    areas = {"box": 2.0 * sum(shape.size[a] * shape.size[a - 1] for a in range(3)), "sphere": math.pi * 0.3**2}
-    assert s.area.sum() == pytest.approx(areas[shape.kind], rel=1e-9)
-    assert (s.area[:, None] * s.normal).sum(0) == pytest.approx(np.zeros(3), abs=0.05 * s.area[0])
+    edges = 2.0 * np.array(shape.half)
+    area = math.pi * edges[0] ** 2 if shape.ROUND else 2.0 * sum(edges[a] * edges[a - 1] for a in range(3))
+    assert s.area.sum() == pytest.approx(area, rel=1e-9)
+    assert (s.area[:, None] * s.normal).sum(0) == pytest.approx(np.zeros(3), abs=1e-15)
     for place, normal, at in zip(s.place, s.normal, s.sample, strict=True):
         assert distance(shape.NUMBER, tuple(place), shape.half, ALL)[0] == pytest.approx(0.0, abs=1e-12)
         assert 0.0 < (place - s.offsets[at]) @ normal < 0.011
@@ -131,7 +132,7 @@ def test_overlaps_with_balls():
 
 @pytest.mark.parametrize("change, said", [
     ({"shape": {"kind": "ball", "diameter": 0.1}}, "must be 'box' or 'sphere'"),
-    ({"shape": {"kind": "sphere", "size": [0.1, 0.1, 0.1]}}, "bodies.a.shape.size: unknown key"),
+    ({"shape": {"kind": "sphere", "size": [0.1, 0.1, 0.1]}}, "bodies.a.shape.size: belongs to kind = 'box'"),
     ({"shape": {"kind": "sphere", "diameter": 0.01}}, "shape.diameter = 0.01: thinner than two particles"),
     ({"position": [0.03, 0.1, 0.1]}, "outside the box, reaches from x = -0.02"),
     ({"position": [0.2, 0.1, "float"], "density": 2000.0}, "does not float"),
@@ -193,6 +194,39 @@ def test_action_is_reaction_with_spheres(shapes):
     assert budget(bodies, contacts, (0.0, 0.0, 0.0)) == pytest.approx(energy, rel=0.01)
     for now, then in zip(momenta(bodies), before, strict=True):
         assert now == pytest.approx(then, abs=1e-14)
+
+
+def test_no_wall_holds_a_sphere_where_there_is_none():
+    """Beyond an open side there is no floor, above the box no side."""
+    places = [(1.2, 0.5, 0.025), (0.97, 0.5, 1.5), (0.97, 0.5, 0.5)]
+    bodies = Bodies(
+        [sphere(0.05)] * 3, [0.06] * 3, places, velocity=[(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    )
+    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), walls=("z_min", "x_max")))
+    falling = Contacts(Bodies([sphere(0.05)], [0.06], [places[0]]), case())
+    go(bodies, contacts, 1e-3, 30)
+    go(falling.bodies, falling, 1e-3, 100)
+    assert bodies.velocity[:, 0].tolist()[1] == 2.0 and bodies.velocity[2, 0] < 0.0
+    assert falling.bodies.position[0, 2] < 0.0
+
+
+@pytest.mark.parametrize("count", [1.5, 2.0, 3.0, 6.0])
+def test_samples_of_a_sphere_pull_nowhere(count):
+    s = sphere(count * 0.01).samples(0.01, 0.031, False)
+    assert (s.shares[:, None] * s.offsets).sum(0) == pytest.approx(np.zeros(3), abs=1e-15)
+    assert (s.area[:, None] * s.normal).sum(0) == pytest.approx(np.zeros(3), abs=1e-15)
+
+
+def test_the_lee_of_a_sphere_is_dry():
+    """Films feed what water reaches: with water on one side only, the faces away from it have none."""
+    body = {"name": "a", "shape": {"kind": "sphere", "diameter": 0.06}, "density": 500.0, "material": "wood"}
+    given = tank(0.24, 0.12, 0.01, (0.09, 0.06), 0.1)
+    given["run"]["settle"] = 0.0
+    s = simulation(given | {"materials": WOOD, "bodies": [{**body, "position": [0.12, 0.05, 0.035], "fixed": True}]})
+    for _ in range(20):
+        s.step()
+    fed = s.bodies.film[0, 1:]
+    assert fed[0] > 0.5 and fed[1] == 0.0, "upstream, and away from the water"
 
 
 def test_no_contact_of_spheres_creates_energy():

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from parsim.boundary.wall import lattice_axis, samples_of
+from parsim.boundary.wall_samples import lattice_axis, samples_of
 from parsim.particles.state import GATE_DOWN, GATE_UP, Particles
 
 _FAR = 1e3  # half edges of the plate over the size of the box: it has neither ends nor a top

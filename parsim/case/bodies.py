@@ -15,7 +15,7 @@ PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 
 
 def thinnest(case, body):
     """Length of the shortest edge of a body, m."""
-    return min(body.shape.size[axis] for axis in case.axes)
+    return 2.0 * min(body.shape.half[axis] for axis in case.axes)
 
 
 def particles_across(case, body):

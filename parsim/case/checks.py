@@ -55,6 +55,7 @@ def doubts(case):
             for name, other, gap in bodies.narrow_passages(case)
         ]
         + case.water.scheme.doubts()
+        + case.contacts.law.doubts(case.dimensions == 2)
         + fills.doubts(case)
     )
 
@@ -88,7 +89,7 @@ def _floated(case, body):
     water = fills.water_at(case.water.fill, x, y)
     if water is None:
         raise ValueError(f"no fill under its centre x = {x!r}, y = {y!r}")
-    if body.angles[0] or body.angles[1]:
+    if not body.shape.ROUND and (body.angles[0] or body.angles[1]):
         raise ValueError(f"its faces must be level, but angles = {list(body.angles)}; give z as a number")
     if (body.density is None) == (body.mass is None):
         raise ValueError("needs its density or its mass")

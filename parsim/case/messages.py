@@ -80,6 +80,9 @@ def _mended(model, data, place):
     if meant is not None:
         table.setdefault(meant, value)
         return f"{path}: unknown key{suggestion(key_path(data, (*place[:-1], meant)))}"
+    kinds = [kind_of(t) for t in _tables_at(model, data, place[:-1])[0] if place[-1] in t.model_fields]
+    if kinds:
+        return f"{path}: belongs to {CHOICE} = {' or '.join(map(repr, kinds))}; allowed: {', '.join(known)}"
     elsewhere = dict(_all_keys(model))
     meant = nearest(place[-1], elsewhere, 0.8)
     return f"{path}: unknown key{suggestion(elsewhere.get(meant)) or '; allowed: ' + ', '.join(known)}"

@@ -150,8 +150,11 @@ class Case(Table):
 
     title: str = Field("", description="one line for people")
     dimensions: Literal[2, 3] = Field(description="2 (the x-z plane, one metre wide) or 3")
-    spacing: Annotated[Real, Field(ge=1e-6, le=1e6)] | None = Field(
-        None, description="particle spacing l0, m; must divide the box; left out without water: half the thinnest body"
+    spacing: Real = Field(  # None only until it is completed
+        None,
+        ge=1e-6,
+        le=1e6,
+        description="particle spacing l0, m; must divide the box; without water half the thinnest body if left out",
     )
     gravity: Vector = Field((0.0, 0.0, -9.81), description="gravity, m/s2")
     wall_material: Name | None = Field(None, description="material of walls and gate; left out: the first material")

@@ -43,7 +43,9 @@ class ShortTable(Table):
     @classmethod
     def __get_pydantic_json_schema__(cls, core, handler):
         """The schema of the table or its name alone."""
-        return {"anyOf": [{"const": kind_of(cls), "type": "string"}, handler(core)]}
+        table = handler(core)
+        table = table | {"required": sorted({CHOICE, *table.get("required", ())})}  # without it another may be meant
+        return {"anyOf": [{"const": kind_of(cls), "type": "string"}, table]}
 
 
 def kind_of(table):

@@ -26,12 +26,13 @@ _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
 
 
 class Patches(NamedTuple):
-    """Sample, face, whether on a rim, place (n, 3), m, normal (n, 3) and area, m2, of each patch; of each sample its
-    particle on this rank or -1, its patches by face (samples, 6), and its body."""
+    """Sample, face, whether on a rim, whether its sample has no other, place (n, 3), m, normal (n, 3) and area, m2, of
+    each patch; of each sample its particle on this rank or -1, its patches by face (samples, 6), and its body."""
 
     sample: np.ndarray
     face: np.ndarray
     rim: np.ndarray
+    lone: np.ndarray
     place: np.ndarray
     normal: np.ndarray
     area: np.ndarray
@@ -84,6 +85,7 @@ class Films:
         self._area = np.concatenate([np.zeros(0), *(s.area for s in each)])
         self._patch = np.full((len(samples), 6), -1)
         self._patch[self.sample, self._face] = np.arange(self.sample.size)
+        self._lone = (self._patch[self.sample] >= 0).sum(axis=1) == 1
 
     def find(self, domain):
         """Note, after a rebuild, which patches this rank has, their particles, and which bodies are near which."""
@@ -109,6 +111,7 @@ class Films:
             self.sample,
             self._face,
             self._rim,
+            self._lone,
             self._place,
             self._normal,
             self._area,
@@ -166,7 +169,7 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
 
     `points`: places of the particles; `solids`: see `gap_ahead`; `water`: Water and its weight; `film`: see `Bodies`.
     """
-    sample, face, on_rim, place, normal, area, row, patch, body = patches
+    sample, face, on_rim, lone, place, normal, area, row, patch, body = patches
     px, py, pz = points
     centre, turn = solids[0].centre, solids[0].turn
     (pressure, head, spacing, layer, deep), weight = water
@@ -193,7 +196,7 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
             if share < 1.0 and value > 0.0 and film[b, 0] != 0.0:
                 for g in range(6):
                     c = patch[s, g]
-                    if g == f or c < 0:
+                    if (g == f) != lone[m] or c < 0:
                         continue
                     ex, ey, ez = to_global(turn[b], place[c, 0], place[c, 1], place[c, 2])
                     edge = (centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez)

@@ -32,9 +32,9 @@ class Motion(NamedTuple):
 class BodySamples:
     """Even samplings of all bodies at about the spacing, down to a support below their surface.
 
-    Each sample carries the volume of its body over the number of samples of the full grid. Samples are placed from
-    the pose, never integrated. `here`: numbers of those that lay in this slab when last asked for. `units` (8, 6) are
-    those of the sums in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the `Samples` of each body.
+    Each sample carries its share of the volume of its body (`shapes.shape.Samples`), and is placed from the pose, never
+    integrated. `here`: numbers of those that lay in this slab when last asked for. `units` (8, 6) are those of the sums
+    in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the `Samples` of each body.
     """
 
     def __init__(self, case, bodies, layers, units):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from parsim.boundary.gate import Gate, GateSamples
-from parsim.boundary.wall import Walls
+from parsim.boundary.wall_samples import Walls
 from parsim.case.scales import power_of_two, scales
 from parsim.coupling.films import Films
 from parsim.coupling.samples import BodySamples

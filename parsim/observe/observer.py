@@ -1,4 +1,4 @@
-"""What watches a run: an object with a name, columns and rows. One file each, listed in the folder's `__init__`."""
+"""What watches a run: an object with a name, columns and rows. One file each, listed in `observers`."""
 
 from __future__ import annotations
 

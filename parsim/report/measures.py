@@ -27,6 +27,11 @@ def columns(run: Run, name: str) -> dict[str, np.ndarray] | None:
     return series if len(series["step"]) else None
 
 
+def wet(run: Run) -> bool:
+    """Whether there is water in a run, as far as its case tells."""
+    return run.case.get("water", {}).get("scheme", {}).get("kind") != "none"
+
+
 def percent(share: float) -> str:
     """A share with as many digits as show it."""
     return f"{100 * share:.2g} %"

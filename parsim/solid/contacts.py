@@ -6,7 +6,7 @@ import numpy as np
 
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.solid import table
-from parsim.solid.element import damping_of
+from parsim.solid.laws.law import damping_of
 from parsim.solid.motion import begin, finish
 from parsim.solid.search import (
     ELEMENT,
@@ -199,6 +199,6 @@ def _table(bodies, cell, driven, material):
     for row, plate in enumerate(driven, count):
         out[row, table.ROLE], out[row, table.MATERIAL] = table.DRIVEN, material
         out[row, table.HALF : table.HALF + 3] = plate.half
-        out[row, table.CELL : table.CELL + 3] = np.max(cell, initial=0.0)
+        out[row, table.CELL : table.CELL + 3] = np.max(cell, initial=0.0, where=np.isfinite(cell))
         out[row, [table.QUATERNION, table.TURN, table.TURN + 4, table.TURN + 8]] = 1.0
     return out

@@ -1,4 +1,4 @@
-"""One contact element: its normal force, its dashpot, its friction spring with memory.
+"""One contact element: its normal force with a dashpot, its friction spring with memory.
 
 Friction is a spring with memory (Cundall & Strack 1979), capped at mu times the normal force of the element.
 """
@@ -8,27 +8,6 @@ import math
 from parsim.machine.jit import kernel
 
 TANGENTIAL = 2.0 / 7.0  # tangential over normal stiffness (Schaefer, Dippel & Wolf 1996)
-
-
-def restitution_of(damping):
-    """Restitution of a linear spring and dashpot of damping ratio `damping` > 0 that ends where its force would pull.
-
-    Schwager & Poeschel 2007, doi 10.1007/s10035-007-0065-z, eq. 21.
-    """
-    if damping < 1.0:
-        root = math.sqrt(1.0 - damping * damping)
-        return math.exp(-damping / root * math.atan2(2.0 * damping * root, 2.0 * damping * damping - 1.0))
-    root = math.sqrt(max(damping * damping - 1.0, 1e-12))
-    return math.exp(-damping / root * math.log((damping + root) / (damping - root)))
-
-
-def damping_of(restitution):
-    """Damping ratio that gives `restitution` (0 < e <= 1) with a force that never pulls."""
-    low, high = 0.0, 1e3
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if middle == 0.0 or restitution_of(middle) > restitution else (low, middle)
-    return low
 
 
 @kernel

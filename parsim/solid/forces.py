@@ -10,7 +10,7 @@ from parsim.solid.motion import clear_loads, speed_of
 from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, SPIN, VELOCITY, three, turn_at
-from parsim.solid.tanks import load_pair
+from parsim.solid.tanks import SHARE, load_pair
 from parsim.solid.touch import centre_of, measure, normal_of, roundness
 
 _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -48,9 +48,18 @@ def coefficients(m, touch, a, b):
 
 @kernel
 def hardness(m, touch, c, area, depth):
-    """(force over touching area and depth, Pa/m; energy held over force times depth) of pair `c`."""
+    """(force over touching area and depth, Pa/m; energy held over force times depth) of pair `c`.
+
+    `area`, m2: what touches, as large as it would be where the contact is not narrow.
+    """
     own = coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])[0]
     return stiffness(touch.law, own, area, roundness(m, touch, c), depth)
+
+
+@kernel
+def hardness_now(m, touch, c, area):
+    """The same for the area, m2, that `measure` has found."""
+    return hardness(m, touch, c, area / touch.tanks[c, SHARE], touch.slots[touch.pairs[c, LAST], DEPTH])
 
 
 @kernel
@@ -79,7 +88,7 @@ def _push(m, touch, c, n, total, lapse):
     """
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    (_, damping, mu), (rigid, held) = coefficients(m, touch, a, b), hardness(m, touch, c, total, slots[last, DEPTH])
+    (_, damping, mu), (rigid, held) = coefficients(m, touch, a, b), hardness_now(m, touch, c, total)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * rigid / total * (0.5 / held))
     motion = relative_motion(m, a, b, by)

@@ -20,8 +20,8 @@ from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.motion import bound_of_speed
 from parsim.solid.separation import ROUND_A, best_feature, between, ramp_of, reach_along
-from parsim.solid.shapes.kernels import touches_at_one_point
-from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, pose_of, shape_of
+from parsim.solid.shapes.kernels import reach, touches_at_one_point
+from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, pose_of, shape_of, three
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
@@ -48,7 +48,7 @@ class Touch(NamedTuple):
 
 
 class Reach(NamedTuple):
-    """How far is looked for pairs: period (3,), m; half extents of the upright boxes (b, 3), m; reach, m; 2D or not."""
+    """How far is looked for pairs: period (3,), m; half extents along the axes (b, 3), m; reach, m; 2D or not."""
 
     period: np.ndarray
     extent: np.ndarray
@@ -77,8 +77,8 @@ def near_pairs(m, touch, period, planar, dt, place, order):
     walls = touch.walls
     count, number = place.size, 0
     extent, widest = _extents(m, count)
-    reach = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
-    near = Reach(period, extent, reach, planar)
+    far = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
+    near = Reach(period, extent, far, planar)
     for row in range(count):
         for step in range(1, count):
             other, around = row + step, 0.0
@@ -87,7 +87,7 @@ def near_pairs(m, touch, period, planar, dt, place, order):
                     break
                 other, around = other - count, period[0]
             along = place[order[other]] + around - place[order[row]]
-            if along > 2.0 * widest + reach or along > 0.5 * period[0]:
+            if along > 2.0 * widest + far or along > 0.5 * period[0]:
                 break
             a, b = min(order[row], order[other]), max(order[row], order[other])
             number = _add(m, touch, number, a, b, near)
@@ -95,10 +95,10 @@ def near_pairs(m, touch, period, planar, dt, place, order):
         for driven in range(count, len(m)):
             number = _add(m, touch, number, a, driven, near)
         for w in range(len(walls)):
-            if m[a, ROLE] > DRIVEN and above(m, walls, a, w) < reach:
+            if m[a, ROLE] > DRIVEN and above(m, walls, a, w) < far:
                 feature = ROUND_A if touches_at_one_point(shape_of(m, a)) else 0
                 number = _note(m, touch, number, a, -1 - w, feature, (0.0, 0.0, 0.0))
-    return number, reach
+    return number, far
 
 
 @kernel
@@ -111,12 +111,11 @@ def above(m, walls, a, w):
 
 @kernel
 def _extents(m, count):
-    """(half extents (rows, 3) of the upright boxes around all rows, the largest along x of the first `count`)."""
+    """(half extents (rows, 3) along the axes of all rows, the largest along x of the first `count`)."""
     extent, widest = np.zeros((len(m), 3)), 0.0
     for b in range(len(m)):
         for a in range(3):
-            for k in range(3):
-                extent[b, a] += m[b, HALF + k] * abs(m[b, TURN + 3 * a + k])
+            extent[b, a] = reach(shape_of(m, b), three(m, b, TURN + 3 * a), three(m, b, HALF))
         if b < count:
             widest = max(widest, extent[b, 0])
     return extent, widest
@@ -124,8 +123,8 @@ def _extents(m, count):
 
 @kernel
 def _add(m, touch, number, a, b, near):
-    """Note the pair of bodies if its boxes are within reach of each other; the new number of pairs."""
-    period, extent, reach, planar = near
+    """Note the pair of bodies if they are within reach of each other; the new number of pairs."""
+    period, extent, far, planar = near
     if m[a, ROLE] <= DRIVEN and m[b, ROLE] <= DRIVEN:
         return number
     moved = np.zeros(3)
@@ -133,11 +132,11 @@ def _add(m, touch, number, a, b, near):
         apart = m[a, POSITION + k] - m[b, POSITION + k]
         if extent[b, k] < 0.5 * period[k] < math.inf:  # what is wider has no image beside itself
             moved[k] = period[k] * np.round(apart / period[k])
-        if abs(apart - moved[k]) > extent[a, k] + extent[b, k] + reach:
+        if abs(apart - moved[k]) > extent[a, k] + extent[b, k] + far:
             return number
     by = (moved[0], moved[1], moved[2])
     feature, distance = best_feature(m, a, b, by, planar)
-    return _note(m, touch, number, a, b, feature, by) if distance <= reach else number
+    return _note(m, touch, number, a, b, feature, by) if distance <= far else number
 
 
 @kernel

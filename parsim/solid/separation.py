@@ -58,7 +58,7 @@ def between(m, a, b, shift):
 
 @kernel
 def separation(m, a, b, shift, feature):
-    """(distance of the boxes along a feature, unit normal from b to a); negative where they overlap.
+    """(distance of a and b along a feature, unit normal from b to a); negative where they overlap.
 
     Edges that have turned parallel since they were chosen, within a step, no longer cross: infinitely far apart.
     """
@@ -89,7 +89,7 @@ def gap_to_round(m, a, b, shift):
 
 @kernel
 def best_feature(m, a, b, shift, planar):
-    """(feature, distance) of the direction along which the boxes are farthest apart. 0.3 us.
+    """(feature, distance) of the direction along which a and b are farthest apart. 0.3 us.
 
     In 2D only the axes in the plane. Edge pairs must win clearly, as they tie with faces where boxes lie flat. Where
     one is round, the direction is that to the nearest point of the other.

@@ -7,7 +7,8 @@ import numpy as np
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
 from parsim.solid.element import TANGENTIAL
-from parsim.solid.forces import compliance, free_time, hardness, press, relative_motion, velocity_at
+from parsim.solid.forces import compliance, free_time, hardness, hardness_now, press, relative_motion, velocity_at
+from parsim.solid.laws.foundation import FOUNDATION
 from parsim.solid.motion import alone, drift_involved, kick_involved
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, STRETCH, A, B
 from parsim.solid.separation import ROUND_A, overlap_share, ramp_of
@@ -90,15 +91,18 @@ def _rate(m, touch, c, n):
     """Square of the largest angular frequency, 1/s2, of pair `c` if all its elements touch."""
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    total, trace = show(m, touch, c, n), 0.0
+    total, trace, largest = show(m, touch, c, n), 0.0, 0.0
     if total == 0.0:
         return 0.0
     for slot in range(first, last + 1):
         if slots[slot, AREA] > 0.0:
-            trace += slots[slot, AREA] * compliance(m, a, b, three(slots, slot, POINT), by, n)
+            each = compliance(m, a, b, three(slots, slot, POINT), by, n)
+            trace, largest = trace + slots[slot, AREA] * each, max(largest, each)
     bounce = total * compliance(m, a, b, centre_of(slots, first, last), by, n)
     rigid, held = hardness(m, touch, c, total, slots[last, DEPTH])
-    return rigid * (1.0 / held - 1.0) * max(bounce, trace / 3.0)  # three ways to move on a face
+    # three ways to move on a face that is as hard everywhere; else all of it may bear on one corner
+    rocking = trace / 3.0 if touch.law == FOUNDATION else total * largest
+    return rigid * (1.0 / held - 1.0) * max(bounce, rocking)
 
 
 @kernel
@@ -115,7 +119,7 @@ def _calm(m, touch, c, n, area):
             fastest = max(fastest, abs(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
             volume += slots[slot, AREA] * slots[slot, DEPTH]
     centre = centre_of(slots, first, last)
-    rigid, held = hardness(m, touch, c, area, slots[last, DEPTH])
+    rigid, held = hardness_now(m, touch, c, area)
     square = rigid * (1.0 / held - 1.0) * area * compliance(m, a, b, centre, by, n)
     unbalanced = _acceleration(m, a, centre, (0.0, 0.0, 0.0), n)
     if b >= 0:
@@ -144,7 +148,7 @@ def elastic(m, touch, number):
         area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
         if area == 0.0:
             continue
-        (rigid, held), potential = hardness(m, touch, c, area, slots[pairs[c, LAST], DEPTH]), 0.0
+        (rigid, held), potential = hardness_now(m, touch, c, area), 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)

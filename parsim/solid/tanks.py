@@ -8,10 +8,10 @@ its forces become smaller. Kinetic energy and tanks together thus never grow, bu
 the geometry and the sub-step. Such accounts are known from haptic interfaces (Hannaford & Ryu 2002,
 doi 10.1109/70.988969).
 
-Columns of `tanks` (n, 19), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
+Columns of `tanks` (n, 20), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
 only dissipate over several kicks; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE, SHEAR, that of its
 friction springs; WORK of the pair's forces in this kick, J; LOADS and LOSSES (6 each), force and torque about the
-centre of body a, N and N m, and their dissipating part.
+centre of body a, N and N m, and their dissipating part; SHARE of its stiffness that a narrow contact has.
 """
 
 import math
@@ -25,14 +25,14 @@ from parsim.solid.search import FIRST, KEY, LAST, STRETCH, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, three, turn_at
 
-STORED, LOST, BEFORE, NOW, SHEAR_BEFORE, SHEAR, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 13
+STORED, LOST, BEFORE, NOW, SHEAR_BEFORE, SHEAR, WORK, LOADS, LOSSES, SHARE = 0, 1, 2, 3, 4, 5, 6, 7, 13, 19
 _ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
 _ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
 def room_for_tanks(count):
     """Empty tanks of `count` pairs."""
-    return np.zeros((count, 19))
+    return np.zeros((count, 20))
 
 
 @kernel

@@ -8,6 +8,7 @@ from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, INDEX, LAST, MIDDLE
 from parsim.solid.separation import ROUND_A, ROUND_B, depth_in_box, edge_crossing, overlap_share, ramp_of, separation
 from parsim.solid.shapes.kernels import touches_at_one_point
 from parsim.solid.table import HALF, POSITION, pose_of, shape_of, three
+from parsim.solid.tanks import SHARE
 
 _NOWHERE = (0.0, 0.0, 0.0)
 _DEEPEST = 0.1  # of its radius, that something round is expected to be pressed in; its stiffness grows with the depth
@@ -33,17 +34,27 @@ def measure(m, touch, c, n):
     walls, pairs, shift = touch.walls, touch.pairs, touch.shift
     a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
+    touch.tanks[c, SHARE] = 1.0
     if pairs[c, FEATURE] >= ROUND_A:
         _spot(m, touch, c, n, max(-normal_of(m, touch, c)[0], 0.0))
-        return touch.slots[last, AREA]
+        return touch.slots[last, AREA] if b >= 0 or _on_wall(touch, c) else 0.0
     here, opposite = pose_of(m, a, _NOWHERE), (-n[0], -n[1], -n[2])
     if b < 0:
         return _against_plane(touch, first, last, here, n, walls[-1 - b, 3])
     there, ramp = pose_of(m, b, by), ramp_of(m, a, b)
-    share = overlap_share(m, a, b, by, n[0], n[1], n[2], 4.0 * ramp) * whole(touch, b)
+    touch.tanks[c, SHARE] = overlap_share(m, a, b, by, n[0], n[1], n[2], 4.0 * ramp)
+    share = touch.tanks[c, SHARE] * whole(touch, b)
     total = _in_box(touch, first, middle, here, there, three(m, b, HALF), n, (ramp, share))
     total += _in_box(touch, middle, last, there, here, three(m, a, HALF), opposite, (ramp, share))
     return total + _cross(m, touch, by, c, n, share)
+
+
+@kernel
+def _on_wall(touch, c):
+    """Whether what is round touches its wall where there is one."""
+    w, last = touch.walls[-1 - touch.pairs[c, B]], touch.pairs[c, LAST]
+    x, y, z = three(touch.slots, last, POINT)
+    return w[4] <= x <= w[7] and w[5] <= y <= w[8] and w[6] <= z <= w[9]
 
 
 @kernel
@@ -158,7 +169,7 @@ def show(m, touch, c, n):
     a, b, by, far = pairs[c, A], pairs[c, B], three(shift, c, 0), 1e9
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
     if pairs[c, FEATURE] >= ROUND_A:
-        _spot(m, touch, c, n, _DEEPEST * roundness(m, touch, c))
+        _spot(m, touch, c, n, max(_DEEPEST * roundness(m, touch, c), -normal_of(m, touch, c)[0]))
         return slots[last, AREA]
     _against_plane(touch, first, middle, pose_of(m, a, _NOWHERE), n, far)
     if b >= 0:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from parsim.case.model import Body
 from parsim.report.curves import INK, LINES, figure, name_ends
 from parsim.report.measures import asked, columns, published
 from parsim.report.page import section, table
@@ -83,19 +84,21 @@ def draught(run: Run, name: str, track: Mapping[str, np.ndarray]) -> float | Non
         if fill["min"][0] <= x <= fill["max"][0] and fill["min"][1] <= y <= fill["max"][1]
     ]
     w, a, b, c = (track[f"q{i}"][row] for i in range(4))
-    # the third row of the rotation matrix: how far each half size reaches down
-    reach = np.abs([2 * (a * c - w * b), 2 * (b * c + w * a), 1 - 2 * (a * a + b * b)])
-    lowest = track["z"][row] - np.dot(reach, body["shape"]["size"]) / 2
+    up = 2 * (a * c - w * b), 2 * (b * c + w * a), 1 - 2 * (a * a + b * b)  # in the body's axes
+    lowest = track["z"][row] - _shape(body).reach(up)
     return float(max(levels) - lowest) if levels else None
 
 
 def archimedes_draught(run: Run, name: str) -> float | None:
-    """The draught (m) of a level box at rest: its density over the water's, times its height; None if it would sink."""
+    """The draught (m) of a level body at rest; None if it would sink."""
     body = run.case["bodies"][run.body_names.index(name)]
-    size = np.array(body["shape"]["size"])
-    density = body.get("density") or body["mass"] / np.prod(size)
-    share = density / run.case["water"].get("density", 1000.0)
-    return float(share * size[2]) if share < 1 else None
+    shape, water = _shape(body), run.case["water"].get("density", 1000.0)
+    density = body.get("density") or body["mass"] / shape.volume
+    return float(shape.draught(density, water)) if density < water else None
+
+
+def _shape(body):
+    return Body.model_validate(body).shape
 
 
 def told(run: Run) -> str:

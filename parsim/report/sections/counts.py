@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.report.curves import WATER, figure
-from parsim.report.measures import columns, percent
+from parsim.report.measures import columns, percent, wet
 from parsim.report.page import section
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def parts(page: Page) -> str:
 def lines(run: Run) -> list[str]:
     """Drift and leaks, for the summary."""
     counts = columns(run, "counts")
-    if counts is None:
+    if counts is None or not wet(run):
         return []
     drift = np.max(np.abs(counts["volume"] / counts["volume"][0] - 1))
     leaks = [f"{counts[name].max()} {name.replace('_', ' ')}" for name in LEAKS if name in counts]
@@ -45,7 +45,7 @@ def lines(run: Run) -> list[str]:
 def volume(run: Run) -> Figure | None:
     """The water's volume against its first value, and the counts of particles where none may be."""
     series = columns(run, "counts")
-    if series is None:
+    if series is None or not wet(run):
         return None
     drawn, axes = figure(1, 2, 3.0)
     first = series["volume"][0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from parsim.report.curves import INK, WATER, figure
-from parsim.report.measures import columns, published
+from parsim.report.measures import columns, published, wet
 from parsim.report.page import section
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def front_arrival(run: Run) -> float | None:
 def front(run: Run) -> Figure | None:
     """The water's front over time and when it reaches the end wall."""
     series = columns(run, "front")
-    if series is None:
+    if series is None or not wet(run):
         return None
     drawn, axes = figure()
     axes = axes[0, 0]

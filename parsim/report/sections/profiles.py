@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.report.curves import WATER, figure
-from parsim.report.measures import asked, moments
+from parsim.report.measures import asked, moments, wet
 from parsim.report.page import section
 from parsim.report.scene import load
 
@@ -30,7 +30,7 @@ def parts(page: Page) -> str:
         "Water profile",
         page.figure(
             "profiles",
-            profiles(page.run, frames) if frames else None,
+            profiles(page.run, frames) if frames and wet(page.run) else None,
             "Surface height along the tank at some times.",
             "Highest connected water across the tank, splash left out, in the frames nearest to the quoted times; "
             "bodies in their places. The line is the free surface and stops where bodies cover it.",

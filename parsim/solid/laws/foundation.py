@@ -1,7 +1,8 @@
 """The contact law "foundation": an elastic layer under what touches.
 
 An element of area A at depth d below the face it touches feels k A d along the normal, k = E* / depth of the layer.
-Linear, so that a block's stiffness and its restitution do not depend on the number of elements.
+Linear, so that a block's stiffness and its restitution do not depend on the number of elements. What is round of radius
+R has an area of pi R d: F = k pi R d^2.
 
 Measured, a block of 72.5 x 72.5 x 19.5 mm dropped at 0.5 m/s, 20 steps a contact (low by half a step's lag of the
 dashpots; 40 steps halve the error), the same within 0.004 for 18 to 2612 elements:
@@ -17,14 +18,16 @@ from typing import Literal
 from pydantic import Field
 
 from parsim.case.types import Positive
-from parsim.machine.later import compiled
+from parsim.machine.compiled import compiled
 from parsim.solid.laws.law import LawTable, compliance
+
+FOUNDATION = 0
 
 
 class FoundationLaw(LawTable):
     """An elastic layer under every face in contact."""
 
-    NUMBER = 0
+    NUMBER = FOUNDATION
 
     kind: Literal["foundation"] = Field("foundation", description="an elastic layer under every face")
     depth: Positive | None = Field(

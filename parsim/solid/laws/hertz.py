@@ -9,7 +9,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from parsim.machine.later import compiled
+from parsim.machine.compiled import compiled
 from parsim.solid.laws.law import LawTable, compliance
 
 
@@ -19,6 +19,12 @@ class HertzLaw(LawTable):
     NUMBER = 1
 
     kind: Literal["hertz"] = Field(description="elastic half-spaces: Hertz for what is round, flat punches for faces")
+
+    def doubts(self, planar):
+        """In a plane a face is a strip without end, which sinks into a half-space without end."""
+        if not planar:
+            return []
+        return ['contacts.law = "hertz": takes the faces of a 2D case for punches one metre long']
 
     def of_pair(self, one, two, thinnest):
         """E*, Pa."""

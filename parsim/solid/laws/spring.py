@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field
 
 from parsim.case.types import Positive
-from parsim.machine.later import compiled
+from parsim.machine.compiled import compiled
 from parsim.solid.laws.law import LawTable
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from parsim.case.types import Size
-from parsim.machine.later import compiled
+from parsim.machine.compiled import compiled
 from parsim.solid.shapes.shape import Samples, ShapeTable
 
 _SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners
@@ -45,6 +45,10 @@ class BoxShape(ShapeTable):
     def radius(self, planar):
         """See `ShapeTable`; the metre across a plane turns with nothing."""
         return float(np.sqrt((np.array(self.half)[[0, 2] if planar else [0, 1, 2]] ** 2).sum()))
+
+    def reach(self, direction):
+        """See `ShapeTable`."""
+        return reach(direction, self.half)
 
     def inertia(self, mass):
         """See `ShapeTable`."""

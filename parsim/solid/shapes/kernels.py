@@ -1,12 +1,12 @@
 """What kernels ask of a shape, chosen by its number; `half` (3,): half edges of the box around it, m."""
 
 from parsim.machine.jit import kernel
-from parsim.solid.shapes import box, sphere
+from parsim.solid.shapes import SHAPES, box, sphere
 
 _distance_box, _distance_sphere = kernel(box.distance), kernel(sphere.distance)
 _ahead_box, _ahead_sphere = kernel(box.ahead), kernel(sphere.ahead)
 _reach_box, _reach_sphere = kernel(box.reach), kernel(sphere.reach)
-_SPHERE = sphere.SphereShape.NUMBER
+_SPHERE, _ROUND = sphere.SphereShape.NUMBER, tuple(shape.NUMBER for shape in SHAPES if shape.ROUND)
 
 
 @kernel
@@ -39,4 +39,4 @@ def reach(shape, d, half):
 @kernel
 def touches_at_one_point(shape):
     """Whether a shape is round (`ShapeTable.ROUND`)."""
-    return shape == _SPHERE
+    return shape in _ROUND

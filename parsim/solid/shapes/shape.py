@@ -36,6 +36,16 @@ class ShapeTable(Table):
     NUMBER: ClassVar[int]
     ROUND: ClassVar[bool] = False
 
+    @property
+    def half(self):
+        """See above."""
+        raise NotImplementedError
+
+    @property
+    def volume(self):
+        """See above."""
+        raise NotImplementedError
+
     def told(self):
         """Key and value of its size, for messages."""
         raise NotImplementedError
@@ -46,6 +56,10 @@ class ShapeTable(Table):
 
     def radius(self, planar):
         """Radius of the ball, in a plane of the disc, around it, m."""
+        raise NotImplementedError
+
+    def reach(self, direction):
+        """Half extent along a unit vector (3,) in its frame, m."""
         raise NotImplementedError
 
     def inertia(self, mass):

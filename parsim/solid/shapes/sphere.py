@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from parsim.case.types import Moderate
-from parsim.machine.later import compiled
+from parsim.machine.compiled import compiled
 from parsim.solid.shapes.shape import Samples, ShapeTable
 
 _TURN = math.pi * (3.0 - math.sqrt(5.0))  # rad, from each point of a spiral to the next: even, and never repeating
@@ -29,11 +29,6 @@ class SphereShape(ShapeTable):
         return (0.5 * self.diameter,) * 3
 
     @property
-    def size(self):
-        """Edges (3,) of the cube around it, m."""
-        return (self.diameter,) * 3
-
-    @property
     def volume(self):
         """Volume, m3."""
         return math.pi / 6.0 * self.diameter**3
@@ -48,6 +43,10 @@ class SphereShape(ShapeTable):
             yield 'shape.kind = "sphere": a 2D case has none; use a box'
 
     def radius(self, planar):
+        """See `ShapeTable`."""
+        return 0.5 * self.diameter
+
+    def reach(self, direction):
         """See `ShapeTable`."""
         return 0.5 * self.diameter
 
@@ -81,7 +80,7 @@ class SphereShape(ShapeTable):
 
     def elements(self, planar, spacing=None):
         """See `ShapeTable`: none, a sphere touches at one point."""
-        return np.zeros((0, 6)), [self.diameter] * 3
+        return np.zeros((0, 6)), [math.inf] * 3
 
     def _shells(self, spacing, depth):
         """Middle radius, m, volume over that of a lattice point, and number of samples of each shell."""
@@ -90,7 +89,7 @@ class SphereShape(ShapeTable):
         for shell in range(min(number, max(math.ceil(depth / radius * number - 0.5), 1))):
             outer, inner = radius * (1.0 - shell / number), radius * (1.0 - (shell + 1) / number)
             volume = 4.0 / 3.0 * math.pi * (outer**3 - inner**3) / spacing**3
-            yield 0.5 * (outer + inner), volume, max(round(volume), 1)
+            yield 0.5 * (outer + inner), volume, 2 * round(0.5 * volume) or 1
 
     def number_of_samples(self, spacing, depth, planar):
         """See `ShapeTable`."""
@@ -103,7 +102,7 @@ class SphereShape(ShapeTable):
             offsets.append(middle * spiral(count) if count > 1 else np.zeros((1, 3)))
             shares.append(np.full(count, volume / count))
         first = len(offsets[0])
-        normal = spiral(first)
+        normal = spiral(first) if first > 1 else np.array([[0.0, 0.0, 1.0]])
         axis = np.abs(normal).argmax(axis=1)
         face = 2 * axis + (normal[np.arange(first), axis] > 0.0)
         patches = np.arange(first), face, np.ones(first, bool), radius * normal, normal
@@ -116,10 +115,12 @@ class SphereShape(ShapeTable):
 
 
 def spiral(count):
-    """Directions (count, 3), even over the sphere: a spiral from pole to pole (Gonzalez 2010)."""
-    up = 1.0 - (2.0 * np.arange(count) + 1.0) / count
-    across, angle = np.sqrt(1.0 - up * up), _TURN * np.arange(count)
-    return np.stack([across * np.cos(angle), across * np.sin(angle), up], -1)
+    """Directions (count, 3), even over the sphere: a spiral from a pole to the equator (Gonzalez 2010) and its mirror
+    image through the centre, so that they pull nowhere; `count` is even."""
+    up = 1.0 - (2.0 * np.arange(count // 2) + 1.0) / count
+    across, angle = np.sqrt(1.0 - up * up), _TURN * np.arange(count // 2)
+    half = np.stack([across * np.cos(angle), across * np.sin(angle), up], -1)
+    return np.concatenate([half, -half])
 
 
 @compiled
