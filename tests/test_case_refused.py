@@ -88,16 +88,18 @@ BROKEN = {
     "table below the bed": ("3d", profile('kind="table", heights=[-0.01, 0.1], shares=[1.0, 1.0]'),
                             ["profile.heights = [-0.01, 0.1]: must be heights in the fill, 0 to 0.1 m"]),
     "keys of another profile": ("3d", profile('kind="linear", roughness=1e-3, shares=[1.0]'),
-                                ["profile.roughness: unknown key; did you mean water.fill.NAME.profile.roughness?"]),
+                                ["profile.roughness: belongs to kind = 'log'; allowed: kind, bottom"]),
     "key of a linear profile": ("3d", profile('kind="table", heights=[0.0, 0.1], shares=[1.0, 1.0], bottom=0.5'),
-                                ["profile.bottom: unknown key; did you mean water.fill.NAME.profile.bottom?"]),
+                                ["profile.bottom: belongs to kind = 'linear'; allowed: kind, heights, shares"]),
     "unknown weight": ("3d", ["water.scheme.weight=gauss"], ["'gauss': must be 'wendland_c4', 'wendland_c2' or 'mps'"]),
     "too much damping": ("3d", ["water.scheme.noise_damping=0.1"],
                          ["water.scheme.noise_damping = 0.1: must be at most 0.005"]),
     "damping that was": ("3d", ["water.damping_viscosity=0.01"], ["water.damping_viscosity: unknown key"]),
     "too much disorder": ("3d", ["water.disorder=0.6"], ["water.disorder = 0.6: must be at most 0.5"]),
     "no gravity, no speed": ("3d", ["gravity=[0,0,0]"], ["water.speed: missing", "without gravity"]),
-    "no water, no speed": ("3d", ["water.fill=[]", "bodies=[]"], ["water.speed: missing", "without fill"]),
+    "no water, no speed": ("3d", ["water.fill=[]", "bodies=[]", 'water.scheme={kind="wcmps"}'],
+                           ["water.speed: missing", "without fill"]),
+    "water and none": ("3d", ['water.scheme={kind="none"}'], ['water.scheme.kind = "none": there is water']),
     "gate outside": ("3d", ["gate.max_x=0.41"], ["gate.max_x = 0.41: outside the tank; must be 0.0 to 0.4"]),
     "gate inside out": ("3d", ["gate.max_x=0.09"], ["gate.max_x = 0.09: must be greater than gate.min_x = 0.1"]),
     "gate without walls": ("3d", ["box.faces.y_max=open"], ["gate: needs walls", 'y_max = "open"']),
@@ -141,8 +143,17 @@ BROKEN = {
 
 # text of a whole file, fragments of the messages
 UNREADABLE = {
-    "empty": ("", ["dimensions: missing", "spacing: missing", "box: missing", "run: missing"]),
-    "syntax": ("spacing = 1\nrun = [}\n", ["not valid TOML", "line 2"]),
+    "empty": ("", ["dimensions: missing", "box: missing", "run: missing"]),
+    "no spacing": (
+        "dimensions = 2
+run.until = 1
+box.max = [1.0, 1.0, 1.0]
+[[water.fill]]
+min = [0.0, 0.0, 0.0]
+"
+        "max = [1.0, 1.0, 0.5]
+", ["spacing: missing; particle spacing l0, m; required where there is water"],
+    ),
     "key twice": ("spacing = 1\nspacing = 2\n", ["not valid TOML: spacing is given twice, again on line 2"]),
     "long value twice": (
         "[water]\nfill = [1]\nspeed = 1\nfill = [ # again\n  2,\n  3,\n]\n",

@@ -229,7 +229,7 @@ def test_a_run_of_an_example_takes_its_reference_along(solver, tmp_path, monkeyp
     (["check", "4_blocks_dry"], "no such file; did you mean ice_release/4_blocks_dry?"),
     (["check", "river"], "error: river: no such file\n"),
     (["new", "mine", "--from", "9_blocks_dri"], "still_water/3d; did you mean ice_release/9_blocks_dry?"),
-    (["new", "mine", "--from", "river"], "--from river: no such example; allowed: dam_break/2d, "),
+    (["new", "mine", "--from", "river"], "--from river: no such example; allowed: bouncing_sphere/sphere, "),
     (["new"], "NAME: missing"),
 ])  # fmt: skip
 def test_an_unknown_example_is_told_with_the_nearest(words, said, tmp_path, capsys, monkeypatch):
@@ -255,7 +255,9 @@ def test_a_new_case_names_the_schema_that_the_readme_has_made(tmp_path, monkeypa
 
 def test_schema_is_json(capsys):
     assert main(["schema"]) == 0
-    assert json.loads(capsys.readouterr().out)["properties"]["spacing"]["description"].endswith("divide the box")
+    assert json.loads(capsys.readouterr().out)["properties"]["spacing"]["description"].startswith(
+        "particle spacing l0, m; must divide the box"
+    )
 
 
 def test_info_tells_of_a_run(tmp_path, capsys):

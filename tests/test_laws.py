@@ -86,7 +86,7 @@ def test_a_face_on_a_floor_is_a_flat_punch():
 @pytest.mark.parametrize("law", [HERTZ, SPRING], ids=lambda law: law.kind)
 def test_no_law_makes_energy(law):
     touched = 0
-    for seed in range(60):
+    for seed in range(30):
         random = np.random.default_rng(seed)
         count = int(random.integers(2, 5))
         shapes = [
@@ -111,7 +111,7 @@ def test_no_law_makes_energy(law):
             held = bodies.kinetic_energy() + bodies.potential_energy((0.0, 0.0, -9.81)) + contacts.elastic_energy()
             assert held <= start + 1e-6 * abs(start) + 1e-9, (seed, step)
         touched += contacts.dissipated > 0.0
-    assert touched > 30
+    assert touched > 15
 
 
 @pytest.mark.parametrize("law", LAWS_HERE, ids=lambda law: law.kind)

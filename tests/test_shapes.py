@@ -230,7 +230,7 @@ def test_the_lee_of_a_sphere_is_dry():
 
 
 def test_no_contact_of_spheres_creates_energy():
-    for seed in range(150):
+    for seed in range(60):
         random = np.random.default_rng(seed)
         count = int(random.integers(1, 5))
         shapes = [
@@ -260,7 +260,7 @@ def test_a_plate_on_balls_comes_to_rest():
     shapes = [*[sphere(0.04)] * 3, *boxes((0.08, 0.08, 0.01))]
     bodies = Bodies(shapes, [0.03, 0.03, 0.03, 0.2], [*legs, (0.5, 0.5, 0.0502)])
     contacts = Contacts(bodies, case(restitution=0.3, friction=0.5, young=1e7))
-    go(bodies, contacts, 2e-4, 5000)
+    go(bodies, contacts, 2e-4, 3000)
     assert np.abs(bodies.velocity).max() < 1e-3
     stiffness = 1.0 / (compliance(*[SimpleNamespace(young=1e7, poisson=0.4)] * 2) * 0.01)
     deep = [math.sqrt(9.81 * m / 3.0 / (stiffness * math.pi * 0.02)) for m in (0.2, 0.29)]
