@@ -145,15 +145,11 @@ BROKEN = {
 UNREADABLE = {
     "empty": ("", ["dimensions: missing", "box: missing", "run: missing"]),
     "no spacing": (
-        "dimensions = 2
-run.until = 1
-box.max = [1.0, 1.0, 1.0]
-[[water.fill]]
-min = [0.0, 0.0, 0.0]
-"
-        "max = [1.0, 1.0, 0.5]
-", ["spacing: missing; particle spacing l0, m; required where there is water"],
+        "dimensions = 2\nrun.until = 1\nbox.max = [1.0, 1.0, 1.0]\n[[water.fill]]\nmin = [0.0, 0.0, 0.0]\n"
+        "max = [1.0, 1.0, 0.5]\n",
+        ["spacing: missing; particle spacing l0, m; required where there is water"],
     ),
+    "syntax": ("spacing = 1\nrun = [}\n", ["not valid TOML", "line 2"]),
     "key twice": ("spacing = 1\nspacing = 2\n", ["not valid TOML: spacing is given twice, again on line 2"]),
     "long value twice": (
         "[water]\nfill = [1]\nspeed = 1\nfill = [ # again\n  2,\n  3,\n]\n",
