@@ -43,7 +43,7 @@ def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), you
     """The parts of a case that contacts read; soft materials make long sub-steps."""
     faces = dict.fromkeys([f"{a}_{s}" for a in "xyz" for s in ("min", "max")], "open") | dict.fromkeys(walls, "wall")
     material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution)
-    numbers = SimpleNamespace(steps_per_contact=steps, law=law)
+    numbers = SimpleNamespace(steps_per_contact=steps, law=law, pairs=())
     box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=Faces(**faces | other))
     return SimpleNamespace(
         dimensions=3,

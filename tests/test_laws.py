@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from contact_cases import FLAT, HALF, MASS, boxes, budget, case, go
 
-from parsim.case.model import load
+from parsim.case.model import Pair, load
 from parsim.errors import InputError
 from parsim.geometry.rotation import from_angles
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.laws import DEFAULT, LAWS
 from parsim.solid.laws.hertz import HertzLaw
-from parsim.solid.laws.law import compliance
+from parsim.solid.laws.law import compliance, damping_of
 from parsim.solid.laws.spring import SpringLaw
 from parsim.solid.shapes import SphereShape
 
@@ -140,6 +140,24 @@ def test_a_narrow_contact_is_soft_whatever_the_law(law):
     go(bodies, contacts, 1e-4, 3000)
     assert bodies.position[2, 2] == pytest.approx(0.54, abs=6e-4), "no more than springs as soft let it"
     assert np.abs(bodies.velocity[2]).max() < 1e-3
+
+
+def test_a_pair_of_materials_may_have_its_own_restitution_and_friction():
+    given = case(restitution=0.9, friction=0.5)
+    given.materials["rail"] = SimpleNamespace(young=YOUNG, poisson=0.4, friction=0.1, restitution=0.3)
+    given.contacts.pairs = (Pair(between=("rail", "ice"), restitution=0.2),)
+    law = Contacts(Bodies([], [], []), given)._pair_law
+    assert law[1, 0, 1] == law[1, 1, 0] == damping_of(0.2) and law[1, 0, 0] == damping_of(0.9)
+    assert law[2, 0, 1] == pytest.approx(0.3), "left out it is the mean"
+    name, pair = "cases/floating_block/block.toml", 'contacts.pairs=[{between=["polypropylene", "%s"], friction=0.1}]'
+    assert load(name, [pair % "polypropylene"]).contacts.pairs[0].friction == 0.1
+    with pytest.raises(
+        InputError, match='contacts.pairs.0.between = "polypropilene": no such material; .* did you mean'
+    ):
+        load(name, [pair % "polypropilene"])
+    twice = '{between=["polypropylene", "polypropylene"]}'
+    with pytest.raises(InputError, match="contacts.pairs.1.between = .*: is given already"):
+        load(name, [f"contacts.pairs=[{twice}, {twice}]"])
 
 
 def test_a_law_is_chosen_in_the_case():

@@ -39,11 +39,20 @@ def names(case):
 
 
 def materials(case):
-    """Every material that is named exists."""
+    """Every material that is named exists, and every pair is given once."""
     uses = [(f"bodies.{body.name}.material", body.material) for body in case.bodies]
     if case.wall_material is not None:
         uses.append(("wall_material", case.wall_material))
-    return [f'{key} = "{name}": {_unknown(name, case.materials)}' for key, name in uses if name not in case.materials]
+    pairs = [tuple(sorted(pair.between)) for pair in case.contacts.pairs]
+    uses += [(f"contacts.pairs.{i}.between", name) for i, pair in enumerate(pairs) for name in pair]
+    twice = [
+        f"contacts.pairs.{i}.between = {list(pair)}: is given already"
+        for i, pair in enumerate(pairs)
+        if pair in pairs[:i]
+    ]
+    return twice + [
+        f'{key} = "{name}": {_unknown(name, case.materials)}' for key, name in uses if name not in case.materials
+    ]
 
 
 def _unknown(name, known):

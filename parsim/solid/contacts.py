@@ -171,16 +171,25 @@ def _pose(bodies):
 def _law(case, bodies):
     """Table (3, n, n) over pairs of materials: what the law needs of them; damping ratio; friction.
 
-    Restitution and friction of a pair are the means of the two (Canelas et al. 2016, doi 10.1016/j.cpc.2016.05.003).
+    Restitution and friction of a pair are those given for it, else the means of the two (Canelas et al. 2016, doi
+    10.1016/j.cpc.2016.05.003).
     """
     used, each = [0, 2] if bodies.planar else [0, 1, 2], list(case.materials.values())
+    names = list(case.materials)
     thinnest = float(bodies.half[:, used].min()) if len(bodies) else 1.0
+    given = {frozenset(pair.between): pair for pair in case.contacts.pairs}
     law = np.zeros((3, len(each), len(each)))
     for i, one in enumerate(each):
         for j, two in enumerate(each):
             law[0, i, j] = case.contacts.law.of_pair(one, two, thinnest)
-            law[1, i, j] = damping_of(0.5 * (one.restitution + two.restitution))
-            law[2, i, j] = 0.5 * (one.friction + two.friction)
+            pair = given.get(frozenset((names[i], names[j])))
+            restitution, friction = (
+                0.5 * (getattr(one, key) + getattr(two, key))
+                if getattr(pair, key, None) is None
+                else getattr(pair, key)
+                for key in ("restitution", "friction")
+            )
+            law[1, i, j], law[2, i, j] = damping_of(restitution), friction
     return law
 
 
