@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from contact_cases import FLAT, HALF, MASS, boxes, budget, case, go
 
-from parsim.case.model import Pair, load
+from parsim.case.contacts import Pair
+from parsim.case.model import load
 from parsim.errors import InputError
 from parsim.geometry.rotation import from_angles
 from parsim.solid.bodies import Bodies

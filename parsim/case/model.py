@@ -13,27 +13,13 @@ from pydantic import Field
 
 from parsim.boundary.sides import OPEN, WALL, Side
 from parsim.case.checks import checked, doubts
+from parsim.case.contacts import Contacts, Material
 from parsim.case.file import read, replaced, written
 from parsim.case.messages import validated
 from parsim.case.output import Output, Report
-from parsim.case.types import (
-    Count,
-    Moderate,
-    Name,
-    NotNegative,
-    Number,
-    Place,
-    Positive,
-    Real,
-    Switch,
-    Table,
-    Vector,
-    Whole,
-)
+from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
 from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
-from parsim.solid.laws import DEFAULT as FOUNDATION
-from parsim.solid.laws import Law
 from parsim.solid.shapes import Shape
 
 
@@ -112,35 +98,6 @@ class Gate(Table):
     bottom: Number | None = Field(None, description="lower edge while closed, m; left out: the floor")
     speed: NotNegative = Field(0.4, description="upward speed once it opens, m/s")
     opens: Number = Field(0.0, description="time at which it starts to rise, s")
-
-
-class Material(Table):
-    """What contacts need to know of a material."""
-
-    young: Positive = Field(description="Young's modulus, Pa")
-    poisson: Real = Field(ge=0, lt=0.5, description="Poisson's ratio")
-    friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
-    restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
-
-
-class Pair(Table):
-    """What holds between two materials, where that is not the mean of theirs."""
-
-    between: tuple[Name, Name] = Field(description="names of two materials, or of one twice")
-    friction: Annotated[Real, Field(ge=0, le=10)] | None = Field(
-        None, description="coefficient of sliding friction; left out: the mean of theirs"
-    )
-    restitution: Annotated[Real, Field(gt=0, le=1)] | None = Field(
-        None, description="coefficient of restitution; left out: the mean of theirs"
-    )
-
-
-class Contacts(Table):
-    """How bodies touch each other, the walls and the gate."""
-
-    law: Law = Field(FOUNDATION, description="contact law")
-    pairs: tuple[Pair, ...] = Field((), description="what holds between two materials")
-    steps_per_contact: Annotated[Whole, Field(ge=5, le=10000)] = Field(20, description="steps in one contact, at least")
 
 
 class Run(Table):

@@ -1,0 +1,37 @@
+"""The tables of a case about what touches: materials, pairs of them, the law."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from parsim.case.types import Name, Positive, Real, Table, Whole
+from parsim.solid.laws import DEFAULT, Law
+
+
+class Material(Table):
+    """What contacts need to know of a material."""
+
+    young: Positive = Field(description="Young's modulus, Pa")
+    poisson: Real = Field(ge=0, lt=0.5, description="Poisson's ratio")
+    friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
+    restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
+
+
+class Pair(Table):
+    """What holds between two materials, where that is not the mean of theirs."""
+
+    between: tuple[Name, Name] = Field(description="names of two materials, or of one twice")
+    friction: Annotated[Real, Field(ge=0, le=10)] | None = Field(
+        None, description="coefficient of sliding friction; left out: the mean of theirs"
+    )
+    restitution: Annotated[Real, Field(gt=0, le=1)] | None = Field(
+        None, description="coefficient of restitution; left out: the mean of theirs"
+    )
+
+
+class Contacts(Table):
+    """How bodies touch each other, the walls and the gate."""
+
+    law: Law = Field(DEFAULT, description="contact law")
+    pairs: tuple[Pair, ...] = Field((), description="what holds between two materials")
+    steps_per_contact: Annotated[Whole, Field(ge=5, le=10000)] = Field(20, description="steps in one contact, at least")
