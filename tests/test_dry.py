@@ -24,26 +24,15 @@ restitution = 0.5
 [run]
 until = 0.12
 """
-BODIES = """
-[[bodies]]
-name = "one"
-shape = {kind = "sphere", diameter = 0.05}
-density = 700.0
-position = [0.1, 0.1, 0.06]
-material = "wood"
-[[bodies]]
-name = "two"
-shape = {kind = "sphere", diameter = 0.03}
-density = 700.0
-position = [0.1, 0.105, 0.11]
-material = "wood"
-[[bodies]]
-name = "box"
-shape = {size = [0.06, 0.06, 0.02]}
-density = 700.0
-position = [0.15, 0.1, 0.012]
-material = "wood"
-"""
+BODY = '[[bodies]]\nname = "{}"\nshape = {}\ndensity = 700.0\nposition = {}\nmaterial = "wood"\n'
+BODIES = "".join(
+    BODY.format(*words)
+    for words in (
+        ("one", '{kind = "sphere", diameter = 0.05}', [0.1, 0.1, 0.06]),
+        ("two", '{kind = "sphere", diameter = 0.03}', [0.1, 0.105, 0.11]),
+        ("box", "{size = [0.06, 0.06, 0.02]}", [0.15, 0.1, 0.012]),
+    )
+)
 WOOD = {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}}
 
 

@@ -183,14 +183,15 @@ def _law(case, bodies):
         for j, two in enumerate(each):
             law[0, i, j] = case.contacts.law.of_pair(one, two, thinnest)
             pair = given.get(frozenset((names[i], names[j])))
-            restitution, friction = (
-                0.5 * (getattr(one, key) + getattr(two, key))
-                if getattr(pair, key, None) is None
-                else getattr(pair, key)
-                for key in ("restitution", "friction")
-            )
-            law[1, i, j], law[2, i, j] = damping_of(restitution), friction
+            law[1, i, j] = damping_of(_of_pair("restitution", one, two, pair))
+            law[2, i, j] = _of_pair("friction", one, two, pair)
     return law
+
+
+def _of_pair(key, one, two, pair):
+    """What is given for a pair of materials, else the mean of the two."""
+    own = getattr(pair, key) if pair else None
+    return 0.5 * (getattr(one, key) + getattr(two, key)) if own is None else own
 
 
 def _of_material(walls, material):
