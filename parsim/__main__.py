@@ -11,6 +11,7 @@ import typer
 
 from parsim import __version__
 from parsim.case.examples import path_of
+from parsim.commands.options import CaseFile, Changes, Folder, Ranks, Row, TableFile, Threads, Until, Walltime
 from parsim.errors import InputError
 from parsim.launch import exits, stop
 
@@ -20,27 +21,6 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-
-CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML), or the name of an example")]
-Folder = Annotated[Path, typer.Argument(metavar="OUT", help="output folder of a run")]
-Changes = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="replace one value, e.g. spacing=0.002 or bodies.A1.density=900"),
-]
-Threads = Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")]
-Ranks = Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")]
-Walltime = Annotated[
-    str | None,
-    typer.Option(metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over"),
-]
-TableFile = Annotated[
-    Path | None,
-    typer.Option(
-        "--table", metavar="TABLE", help="CSV: the first line names keys of the case, each further line is a run"
-    ),
-]
-Row = Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")]
-Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -91,6 +71,25 @@ def run(
     from parsim.run.loop import run as solve
 
     return solve(loaded, case, out, force, limit)
+
+
+@command
+def validate(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME]...", help="examples, or folders of them; left out: all")
+    ] = None,
+    level: Annotated[str, typer.Option(metavar="LEVEL", help="quick, or full: the long ones too")] = "quick",
+    as_json: Annotated[bool, typer.Option("--json", help="print rows as JSON")] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there"),
+    ] = None,
+    ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")] = 1,
+) -> int:
+    """Run examples and compare them with published and exact numbers; exit code 3 if a bar is missed."""
+    from parsim.validate.runs import validate as check
+
+    return check(names or [], level, as_json, out, ranks)
 
 
 @command

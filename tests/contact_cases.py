@@ -76,4 +76,4 @@ def momenta(bodies):
 
 def budget(bodies, contacts, gravity=GRAVITY):
     energy = bodies.kinetic_energy() + bodies.potential_energy(gravity) + contacts.elastic_energy()
-    return energy + contacts.dissipated - contacts.gate_work
+    return energy + contacts.dissipated - contacts.driven_work

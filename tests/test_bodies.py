@@ -72,7 +72,7 @@ def test_kinetic_energy_is_the_sum_over_points():
         spin=[(4.0, -5.0, 6.0)],
     )
     nodes = np.array([-1.0, 1.0]) / math.sqrt(3.0)  # two Gauss points along each edge are exact for squares
-    points = np.stack(np.meshgrid(nodes, nodes, nodes, indexing="ij"), -1).reshape(-1, 3) * bodies.half
+    points = np.stack(np.meshgrid(nodes, nodes, nodes, indexing="ij"), -1).reshape(-1, 3) * bodies.forms.half
     at = points @ matrices(bodies.quaternion)[0].T
     speed = bodies.velocity[0] + np.cross(bodies.spin[0], at)
     assert bodies.kinetic_energy() == pytest.approx(0.5 * 2.0 / 8 * (speed**2).sum(), rel=1e-13)
@@ -91,7 +91,7 @@ def test_surface_is_closed_and_looks_outward():
     volumes = (cross * (corner.mean(axis=1) - bodies.position[body])).sum(axis=1) / 3
     assert [volumes[body == b].sum() for b in range(2)] == pytest.approx(bodies.volume)
     assert np.linalg.norm(points - bodies.position.repeat(8, 0), axis=1) == pytest.approx(
-        np.linalg.norm(bodies.half, axis=1).repeat(8)
+        np.linalg.norm(bodies.forms.half, axis=1).repeat(8)
     )
     assert np.bincount(quads.ravel()).tolist() == [3] * 16
 
@@ -145,11 +145,11 @@ def test_from_case():
     }
     bodies = (SimpleNamespace(name="a", **body), SimpleNamespace(name="b", **body | {"released": 1.0}))
     case = SimpleNamespace(
-        bodies=bodies, materials={"steel": None, "ice": None}, dimensions=3, mass_of=lambda body: 5.0
+        bodies=bodies, joints=(), materials={"steel": None, "ice": None}, dimensions=3, mass_of=lambda body: 5.0
     )
     made = from_case(case)
     assert made.names == ["a", "b"] and made.material.tolist() == [1, 1] and made.mass.tolist() == [5.0, 5.0]
-    assert made.half[0] == pytest.approx((0.1, 0.2, 0.3))
+    assert made.forms.half[0] == pytest.approx((0.1, 0.2, 0.3))
     assert made.held(0.5).tolist() == [False, True] and made.held(1.0).tolist() == [False, False]
     assert made.velocity.tolist() == [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
     assert made.surface_speed() == pytest.approx(1.0 + math.sqrt(0.14))

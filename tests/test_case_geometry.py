@@ -9,6 +9,7 @@ from example_cases import bodies, write
 from parsim.case import places
 from parsim.case.model import load
 from parsim.errors import InputError
+from parsim.solid.shapes import BoxShape
 
 
 @pytest.fixture
@@ -39,7 +40,7 @@ def test_overlap_agrees_with_points_inside_both():
     seen = set()
     for _ in range(200):
         first, second = (
-            places.TurnedBox(centre, half, places.rotation(angles))
+            places.Place(centre, places.rotation(angles), BoxShape.model_construct(size=tuple(2.0 * half)))
             for centre, half, angles in random.uniform([[-1], [0.2], [-180]], [[1], [1], [180]], (2, 3, 3))
         )
         points = (grid * first.half) @ first.axes.T + first.centre

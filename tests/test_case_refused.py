@@ -122,7 +122,6 @@ BROKEN = {
     "afloat on the floor": ("3d", ["bodies.A1.position=[0.2,0.05,'float']", "water.fill.1.max=[0.4,0.1,0.01]"],
                             ["draught 0.01736 m is more than the depth of water there, 0.01 m"]),
     "afloat without water": ("3d", ["bodies.A1.position=[0.1025,0.05,'float']"], ["no fill under its centre x ="]),
-    "afloat and tilted": ("3d", ["bodies.A1.angles=[0,5,0]"], ["faces must be level"]),
     "wrong word for a height": ("3d", ["bodies.A1.position=[0.05,0.05,'flot']"],
                                 ["bodies.A1.position.2 = 'flot': must be a number or 'float'"]),
     "fixed but moving": ("3d", ["bodies.A1.fixed=true", "bodies.A1.spin=[0,0,1]"], ["bodies.A1.fixed = true", "zero"]),

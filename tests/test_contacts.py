@@ -241,14 +241,14 @@ def test_a_rising_gate_drags_a_block_by_friction():
     load = np.array([[2.0, 0.0, 0.0, 0.0, 0.0, 0.0]])  # 0.824 N of friction against 0.873 N of weight: it slides down
     go(bodies, contacts, 2e-4, 250, load=load)
     assert bodies.velocity[0, 2] == pytest.approx((MU * 2.0 / MASS - 9.81) * 0.05, rel=0.02)
-    assert contacts.gate_work == pytest.approx(MU * 2.0 * 0.4 * 0.05, rel=0.02)
+    assert contacts.driven_work == pytest.approx(MU * 2.0 * 0.4 * 0.05, rel=0.02)
     bodies = blocks([(0.5 - HALF[2], 0.5, 0.5)], quaternion=[from_angles((0.0, 90.0, 0.0))])
     contacts, load = Contacts(bodies, case(), [Plate()]), np.array([[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
     start, pushed = budget(bodies, contacts), bodies.position[0, 0]
     go(bodies, contacts, 2e-4, 1000, load=load)
     assert bodies.velocity[0, 2] == pytest.approx(0.4, abs=0.01)
     pushed = 5.0 * (bodies.position[0, 0] - pushed)
-    assert budget(bodies, contacts) == pytest.approx(start + pushed, abs=0.01 * contacts.gate_work)
+    assert budget(bodies, contacts) == pytest.approx(start + pushed, abs=0.01 * contacts.driven_work)
 
 
 def test_going_on_from_what_was_kept_gives_the_same_bits():

@@ -145,7 +145,7 @@ def test_disorder_moves_no_water_into_bodies_or_the_gate(seed):
         boxes = [
             outside_box(place, c, turn, half, (0, 2))[0]
             for c, turn, half in zip(
-                even.bodies.position, matrices(even.bodies.quaternion), even.bodies.half, strict=True
+                even.bodies.position, matrices(even.bodies.quaternion), even.bodies.forms.half, strict=True
             )
         ]
         return np.minimum(np.min(boxes, axis=0), np.maximum(0.147 - place[:, 0], place[:, 0] - 0.152))

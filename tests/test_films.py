@@ -8,6 +8,7 @@ from parsim.coupling.gaps import gap_to_plane
 from parsim.errors import InputError
 from parsim.geometry.nearby import near_bodies
 from parsim.solid.shapes import BoxShape
+from parsim.solid.shapes.forms import forms_of
 from parsim.solid.shapes.kernels import ahead
 
 WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
@@ -100,11 +101,11 @@ def test_gaps_are_measured_along_the_normal():
     assert gap_to_plane((0.2, 0.0, 0.04), slanted, floor) == pytest.approx(0.05)
     assert gap_to_plane((0.2, 0.0, 0.03), down, side) == np.inf
     assert gap_to_plane((0.31, 0.0, 0.03), down, floor) == np.inf, "beyond the open side"
-    half, box = (0.1, 0.2, 0.3), BoxShape.NUMBER
-    assert ahead(box, (0.0, 0.0, 0.35), down, half, 0.01) == pytest.approx(0.05)
-    assert ahead(box, (0.0, 0.0, 0.295), down, half, 0.01) == pytest.approx(-0.005), "an overlap closes the gap"
-    assert ahead(box, (0.11, 0.0, 0.35), down, half, 0.01) == np.inf, "beside it"
-    assert ahead(box, (0.0, 0.0, -0.4), down, half, 0.01) == np.inf, "behind"
+    forms = forms_of([BoxShape(size=(0.2, 0.4, 0.6))], False)
+    assert ahead(forms, 0, (0.0, 0.0, 0.35), down, 0.01) == pytest.approx(0.05)
+    assert ahead(forms, 0, (0.0, 0.0, 0.295), down, 0.01) == pytest.approx(-0.005), "an overlap closes the gap"
+    assert ahead(forms, 0, (0.11, 0.0, 0.35), down, 0.01) == np.inf, "beside it"
+    assert ahead(forms, 0, (0.0, 0.0, -0.4), down, 0.01) == np.inf, "behind"
 
 
 def test_water_inside_a_body_is_turned_out_through_the_nearest_face():

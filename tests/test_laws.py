@@ -168,7 +168,7 @@ def test_a_law_is_chosen_in_the_case():
         load(name, ['contacts.law={kind="spring"}'])
     assert load(name, ["contacts.law=hertz"]).contacts.law == HERTZ
     for wrong in ('{kind="herz"}', "herz", "3"):
-        with pytest.raises(InputError, match="must be 'foundation', 'hertz' or 'spring'"):
+        with pytest.raises(InputError, match="must be 'foundation', 'hertz', 'spring' or 'impulse'"):
             load(name, [f"contacts.law={wrong}"])
     with pytest.raises(InputError, match="contacts.law.stiffness: belongs to kind = 'spring'; allowed: kind, depth"):
         load(name, ["contacts.law={stiffness=1e5}"])

@@ -75,8 +75,9 @@ def test_accelerations_against_a_plain_solution():
     exact = np.linalg.solve(rigid + water, load[0] + water @ before + given)
     for held in (False, True):
         now, angular, change, left = before[None, :3].copy(), before[None, 3:].copy(), np.zeros((1, 6)), load.copy()
-        bodies = Given(mass, inertia, quaternion, np.array([held]), contact, spin)
-        accelerate_bodies(left, total[None], bodies, False, gravity, now, angular, change)
+        free = np.full((1, 6), 0.0 if held else 1.0)
+        bodies = Given(mass, inertia, quaternion, contact, spin, free, np.zeros((1, 6)), np.zeros((1, 3)), np.zeros(1))
+        accelerate_bodies(left, total[None], bodies, gravity, now, angular, change)
         after = np.zeros(6) if held else exact
         assert np.hstack([now, angular])[0] == pytest.approx(after, rel=1e-10, abs=1e-10)
         assert change[0] == pytest.approx(after - before, rel=1e-10, abs=1e-10)

@@ -122,7 +122,7 @@ def test_the_painter_puts_things_where_they_are(run):
 
 
 def test_spheres_without_water_have_a_page(tmp_path):
-    case = Path(__file__).parents[1] / "cases" / "bouncing_sphere" / "sphere.toml"
+    case = Path(__file__).parents[1] / "cases" / "bouncing_sphere" / "impulse.toml"
     assert main(["run", str(case), "-o", str(tmp_path / "out"), "--until", "0.05"]) == 0
     assert main(["report", str(tmp_path / "out")]) == 0
     text = (tmp_path / "out" / "report" / "index.html").read_text()
@@ -174,7 +174,7 @@ def test_a_tilted_block_reaches_deeper(run):
 
 
 def test_energy_created_takes_work_off():
-    energy = {"time": [-1.0, 0.0, 1.0], "total": [9.0, 2.0, 3.0], "work_gate": [5.0, 1.0, 1.5]}
+    energy = {"time": [-1.0, 0.0, 1.0], "total": [9.0, 2.0, 3.0], "work_driven": [5.0, 1.0, 1.5]}
     energy = {name: np.array(values) for name, values in energy.items()}
     times, created = energy_created(energy)
     np.testing.assert_array_equal(created, [0.0, 0.25])

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from clouds import outside_box
+from contact_cases import boxes
 
 from parsim.case.model import parse
 from parsim.domain.comm import Comm
@@ -19,6 +20,7 @@ from parsim.run.fill import taken_by_bodies, water
 from parsim.run.near_bodies import Bodies, away
 from parsim.run.simulation import Simulation
 from parsim.solid.bodies import from_case
+from parsim.solid.shapes.forms import forms_of
 
 TANK = {
     "dimensions": 2,
@@ -140,7 +142,7 @@ def test_the_budget_counts_the_work_of_the_gate_on_the_water():
     while s.time < until:
         s.step()
     lifted = 9810.0 * (level - 0.1 - 0.5 * speed * until) * thick * speed * until
-    assert s.contacts.gate_work == pytest.approx(-lifted, rel=0.15)
+    assert s.contacts.driven_work == pytest.approx(-lifted, rel=0.15)
 
 
 def decay_error(spacing, across):
@@ -191,11 +193,11 @@ def test_the_samples_of_a_body_carry_its_volume():
 
 def turned_boxes(centre, turn, half):
     """Boxes as `run.near_bodies` has them."""
-    return Bodies(centre, turn.reshape(-1, 9), np.zeros(len(half), np.int64), half, np.ones(3, bool))
+    return Bodies(centre, turn.reshape(-1, 9), forms_of(boxes(*half), False))
 
 
 def test_how_far_a_box_is_away():
-    box = turned_boxes(np.zeros((1, 3)), np.eye(3), np.array([[1.0, 2.0, 3.0]]))
+    box = turned_boxes(np.zeros((1, 3)), np.eye(3), [(1.0, 2.0, 3.0)])
     points = [(2.0, 0.0, 0.0), (0.5, 0.0, 0.0), (2.0, 3.0, 0.0), (0.0, 0.0, -1.5)]
     assert [away(p, 0, box)[0] for p in points] == pytest.approx([1.0, -0.5, math.sqrt(2), -1.0])
     assert away(points[2], 0, box)[1] == pytest.approx((math.sqrt(0.5), math.sqrt(0.5), 0.0))
@@ -207,7 +209,7 @@ def test_how_far_turned_boxes_are_away_against_a_plain_version():
     box = turned_boxes(rng.uniform(-1.0, 1.0, (20, 3)), turn, rng.uniform(0.1, 0.5, (20, 3)))
     points = rng.uniform(-1.5, 1.5, (50, 3))
     for b in range(20):
-        distance, direction = outside_box(points, box.position[b], turn[b], box.half[b], (0, 1, 2))
+        distance, direction = outside_box(points, box.position[b], turn[b], box.forms.half[b], (0, 1, 2))
         found = [away(tuple(p), b, box) for p in points]
         assert [d for d, _ in found] == pytest.approx(distance, abs=1e-12)
         out = distance > 0.0

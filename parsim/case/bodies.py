@@ -14,8 +14,8 @@ PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 
 
 
 def thinnest(case, body):
-    """Length of the shortest edge of a body, m."""
-    return 2.0 * min(body.shape.half[axis] for axis in case.axes)
+    """Least width of a body, m."""
+    return 2.0 * body.shape.thinnest(case.dimensions == 2)
 
 
 def particles_across(case, body):
@@ -95,7 +95,7 @@ def _planar(body):
 
 def _outside(case, body):
     place = places.of_body(body)
-    low, high, around = place.centre - place.reach, place.centre + place.reach, repeats(case)
+    low, high, around = place.low(), place.high(), repeats(case)
     for axis in case.axes:
         name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
         if around[axis]:
@@ -144,6 +144,34 @@ def overlaps(case):
                 f"bodies.{body.name}: is in the gate, x = {case.gate.min_x!r} to {case.gate.max_x!r}, by {depth:.3g} m"
             )
     return faults
+
+
+def joints(case):
+    """Every joint ties a body that there is, and what is tied to two of them can follow both."""
+    known, taken, faults = {body.name: body for body in case.bodies}, {}, []
+    for i, joint in enumerate(case.joints):
+        key = f"joints.{i}"
+        if joint.body not in known:
+            allowed = ", ".join(list(known)[:8]) or "none, there are no bodies"
+            faults.append(
+                f'{key}.body = "{joint.body}": no such body; allowed: {allowed}'
+                f"{', ...' if len(known) > 8 else ''}{suggestion(nearest(joint.body, known))}"
+            )
+            continue
+        faults += [f"{key}.{text}" for text in joint.faults(known[joint.body], case.dimensions == 2)]
+        if joint.kind != "spring":
+            faults += [f"{key}: {text}" for text in _clashes(joint, taken.setdefault(joint.body, []))]
+            taken[joint.body].append(joint)
+    return faults
+
+
+def _clashes(joint, others):
+    """Why a body cannot follow this joint besides `others`: messages."""
+    for other in others:
+        kinds = {joint.kind, other.kind}
+        turns = all(name.startswith("turn") for one in (joint, other) for name in getattr(one, "locked", ()))
+        if kinds != {"lock"} and not (kinds == {"lock", "pendulum"} and turns):
+            yield f'bodies.{joint.body} has a joint of kind "{other.kind}" already; a pendulum may lock turns besides'
 
 
 def _gate_box(case):

@@ -3,7 +3,9 @@
 import math
 from fractions import Fraction
 
-from parsim.case import bodies
+import numpy as np
+
+from parsim.case import bodies, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -21,6 +23,7 @@ def checked(case, messages):
         bodies.bodies,
         bodies.speeds,
         bodies.overlaps,
+        bodies.joints,
         bodies.gate,
         bodies.sensors,
     )
@@ -63,7 +66,7 @@ def doubts(case):
 def _completed(case):
     """(`case` with the values filled in that depend on other keys, messages)."""
     floated, faults = [], []
-    for body in case.bodies:
+    for body in repeats.every(case):
         try:
             floated.append(_floated(case, body) if body.position[2] == "float" else body)
         except ValueError as error:
@@ -89,17 +92,17 @@ def _floated(case, body):
     water = fills.water_at(case.water.fill, x, y)
     if water is None:
         raise ValueError(f"no fill under its centre x = {x!r}, y = {y!r}")
-    if not body.shape.ROUND and (body.angles[0] or body.angles[1]):
-        raise ValueError(f"its faces must be level, but angles = {list(body.angles)}; give z as a number")
     if (body.density is None) == (body.mass is None):
         raise ValueError("needs its density or its mass")
     (bottom, level), density = water, case.density_of(body)
     if density >= case.water.density:
         raise ValueError(f"density {density:.6g} kg/m3 does not float; must be below that of the water")
-    draught = body.shape.draught(density, case.water.density)
+    place = places.of_body(body.model_copy(update={"position": (x, y, 0.0)}))
+    height = body.shape.afloat(density / case.water.density, place.axes[2])
+    draught = place.along(np.array([0.0, 0.0, -1.0])) - height
     if draught > level - bottom:
         raise ValueError(f"draught {draught:.6g} m is more than the depth of water there, {level - bottom:.6g} m")
-    return body.model_copy(update={"position": (x, y, level - draught + body.shape.half[2])})
+    return body.model_copy(update={"position": (x, y, float(level + height))})
 
 
 def _spacing(case):

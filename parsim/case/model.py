@@ -20,6 +20,7 @@ from parsim.case.output import Output, Report
 from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
 from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
+from parsim.solid.joints import Joint
 from parsim.solid.shapes import Shape
 
 
@@ -74,6 +75,14 @@ class Water(Table):
     fill: tuple[Fill, ...] = Field((), description="boxes of water at the start")
 
 
+class Repeat(Table):
+    """Many bodies alike, on a lattice; each is then a body of its own, its name with a number from 1."""
+
+    count: tuple[Count, Count, Count] = Field(description="how many along x, y and z")
+    step: Vector = Field(description="distances along x, y and z, m")
+    disorder: NotNegative = Field(0.0, description="how far each is off its place along each axis, at most, m")
+
+
 class Body(Table):
     """A rigid body. Exactly one of density and mass is given."""
 
@@ -88,6 +97,7 @@ class Body(Table):
     material: Name = Field(description="name of its material")
     fixed: Switch = Field(False, description="never moves")
     released: Number | None = Field(None, description="held in place before this time, s; left out: never held")
+    repeat: Repeat | None = Field(None, description="many of them on a lattice; left out: one")
 
 
 class Gate(Table):
@@ -137,6 +147,7 @@ class Case(Table):
     report: Report = Field(Report(), description="what the page of the run shows")
     materials: dict[Name, Material] = Field({}, description="materials by name")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies")
+    joints: tuple[Joint, ...] = Field((), description="what ties bodies to the world")
 
     @property
     def start(self):

@@ -1,29 +1,50 @@
-"""Exact tests on turned boxes and balls: reach, distance, overlap. Angles in degrees, lengths in m."""
+"""Where bodies are at the start: reach, distance and overlap of what is turned. Angles in degrees, lengths in m."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from parsim.solid.shapes import BoxShape, SphereShape
 from parsim.solid.shapes.box import distance
+
+_WAYS, _ROUNDS = 64, 12  # directions tried at first, and around the best of them
 
 
 @dataclass(frozen=True)
-class TurnedBox:
-    """A box, or the ball in it: centre (3,), half edges (3,), axes (3, 3) whose columns are its edge directions."""
+class Place:
+    """A shape with its centre (3,), m, and axes (3, 3), whose columns are the directions of its own; grown by m."""
 
     centre: np.ndarray
-    half: np.ndarray
     axes: np.ndarray
-    round: bool = False
+    shape: object
+    grown_by: float = 0.0
+    reach: np.ndarray = field(init=False)  # half extents along x, y and z, to the farther side, (3,), m
+
+    def __post_init__(self):
+        """Find how far it reaches."""
+        both = [max(self.along(way), self.along(-way)) for way in np.eye(3)]
+        object.__setattr__(self, "reach", np.array(both))
 
     @property
-    def reach(self):
-        """Half extents along x, y and z, (3,), m."""
-        return self.half if self.round else np.abs(self.axes) @ self.half
+    def half(self):
+        """Half edges (3,) of its box, m."""
+        return np.array(self.shape.half) + self.grown_by
+
+    def along(self, way):
+        """How far it reaches along a unit vector (3,) from its centre, m."""
+        return self.shape.reach(self.axes.T @ way) + self.grown_by
+
+    def low(self):
+        """Lowest corner (3,) of the upright box around it, m."""
+        return self.centre - [self.along(-way) for way in np.eye(3)]
+
+    def high(self):
+        """Highest corner (3,) of the upright box around it, m."""
+        return self.centre + [self.along(way) for way in np.eye(3)]
 
     def grown(self, by):
         """The same with its surface moved outwards by `by`, m."""
-        return replace(self, half=self.half + by)
+        return Place(self.centre, self.axes, self.shape, self.grown_by + by)
 
 
 def rotation(angles):
@@ -37,40 +58,71 @@ def rotation(angles):
 
 def of_body(body):
     """The place that a body of a case takes."""
-    return TurnedBox(np.array(body.position), np.array(body.shape.half), rotation(body.angles), body.shape.ROUND)
+    w, _, _, z = body.shape.turn  # shapes are turned about their z axis alone
+    own = rotation((0.0, 0.0, np.degrees(2.0 * np.arctan2(z, w))))
+    return Place(np.array(body.position), rotation(body.angles) @ own, body.shape)
 
 
-def clearance(box, points):
-    """Distance (n,) of points (n, 3) from a box or ball, m; 0 inside."""
-    if box.round:
-        return np.maximum(np.linalg.norm(points - box.centre, axis=1) - box.half[0], 0.0)
-    over = np.maximum(np.abs((points - box.centre) @ box.axes) - box.half, 0.0)
-    return np.sqrt((over**2).sum(axis=1))
+def clearance(place, points):
+    """Distance (n,) of points (n, 3) from a body, m; 0 inside."""
+    local = (points - place.centre) @ place.axes
+    return np.maximum(place.shape.away(local) - place.grown_by, 0.0)
 
 
 def upright(low, high):
     """The box between the corners `low` and `high`, (3,)."""
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)
-    return TurnedBox((low + high) / 2, (high - low) / 2, np.eye(3))
+    return Place((low + high) / 2, np.eye(3), BoxShape.model_construct(size=tuple(high - low)))
 
 
 def overlap(first, second, shift=(0.0, 0.0, 0.0)):
-    """Least depth, m, by which `first` enters `second` moved by `shift`; 0 or less when they are apart or touch.
-
-    Separating axes (Gottschalk, Lin & Manocha 1996): three of each box and their nine cross products.
-    """
+    """Least depth, m, by which `first` enters `second` moved by `shift`; 0 or less when they are apart or touch."""
     between = second.centre + np.asarray(shift) - first.centre
-    if first.round or second.round:
-        ball, other, way = (first, second, -between) if first.round else (second, first, between)
-        if other.round:
+    kinds = [type(place.shape) for place in (first, second)]
+    if SphereShape in kinds:
+        ball, other, way = (first, second, -between) if kinds[0] is SphereShape else (second, first, between)
+        if type(other.shape) is SphereShape:
             return float(first.half[0] + second.half[0] - np.linalg.norm(between))
-        high, _ = distance(other.axes.T @ way, other.half, (True, True, True))
-        return float(ball.half[0] - high)
+        if type(other.shape) is BoxShape:
+            high, _ = distance(other.axes.T @ way, other.half, False)
+            return float(ball.half[0] - high)
+    elif kinds == [BoxShape] * 2:
+        return _overlap_of_boxes(first, second, between)
+    return -_separation(first, second, between)
+
+
+def _overlap_of_boxes(first, second, between):
+    """Separating axes (Gottschalk, Lin & Manocha 1996): three of each box and their nine cross products."""
     crosses = np.cross(first.axes.T[:, None, :], second.axes.T[None, :, :]).reshape(9, 3)
     lengths = np.linalg.norm(crosses, axis=1)
     directions = np.vstack([first.axes.T, second.axes.T, crosses[lengths > 1e-9] / lengths[lengths > 1e-9, None]])
     reach = np.abs(directions @ first.axes) @ first.half + np.abs(directions @ second.axes) @ second.half
     return float(np.min(reach - np.abs(directions @ between)))
+
+
+def _separation(first, second, between):
+    """How far two convex bodies are apart along the direction along which they are farthest apart, m.
+
+    Sought from the faces and the centres on, then ever closer around the best: that has no second maximum.
+    """
+
+    def apart(way):
+        return float(between @ way) - first.along(way) - second.along(-way)
+
+    dice = np.random.default_rng(0)
+    flat = first.shape.FLAT or second.shape.FLAT
+    ways = [between, *dice.normal(size=(_WAYS, 3))]
+    for place in (first, second):
+        ways += [sign * place.axes @ normal for normal in place.shape.normals() for sign in (1.0, -1.0)]
+    best, most = None, -np.inf
+    for width in [None, *0.3 ** np.arange(_ROUNDS)]:
+        tried = ways if width is None else best + width * dice.normal(size=(24, 3))
+        for way in tried:
+            way = way * (1.0, 0.0, 1.0) if flat else way
+            length = np.linalg.norm(way)
+            if length > 1e-12 and (gap := apart(way / length)) > most:
+                best, most = way / length, gap
+    return most
 
 
 def near_pairs(boxes, period=(np.inf, np.inf, np.inf)):

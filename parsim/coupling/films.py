@@ -120,7 +120,7 @@ class Films:
             self.samples.body,
         )
         turn = matrices(quaternion).reshape(-1, 9)
-        bodies = Bodies(position, turn, b.shape, b.half, self._first, self._others, self._period)
+        bodies = Bodies(position, turn, b.forms, self._first, self._others, self._period)
         water = Water(p.p, self._head, self._spacing, self._layer, self._deep)
         solids = bodies, self._planes, plate
         patch_loads(here, patches, near.lists, p.place, solids, (water, self._weight), b.film, found)

@@ -6,17 +6,16 @@ import numpy as np
 
 from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
+from parsim.solid.shapes.forms import Forms
 from parsim.solid.shapes.kernels import ahead
 
 
 class Bodies(NamedTuple):
-    """Centre (b, 3), turn (b, 9), shape (b,), half (b, 3) of the bodies; others[first[b]:first[b + 1]] are near b;
-    period, m."""
+    """Centre (b, 3), turn (b, 9) and forms of the bodies; others[first[b]:first[b + 1]] are near b; period, m."""
 
     centre: np.ndarray
     turn: np.ndarray
-    shape: np.ndarray
-    half: np.ndarray
+    forms: Forms
     first: np.ndarray
     others: np.ndarray
     period: float
@@ -43,7 +42,7 @@ def gap_ahead(x, n, b, solids, spacing):
     where there is one.
     """
     bodies, planes, gate = solids
-    centre, turn, shape, half, first, others, period = bodies
+    centre, turn, forms, first, others, period = bodies
     gap = np.inf
     for w in range(len(planes)):
         gap = min(gap, gap_to_plane(x, n, planes[w]))
@@ -57,5 +56,5 @@ def gap_ahead(x, n, b, solids, spacing):
             dx -= period * np.rint(dx / period)
         place = to_body(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
         along = to_body(turn[d], n[0], n[1], n[2])
-        gap = min(gap, ahead(shape[d], place, along, (half[d, 0], half[d, 1], half[d, 2]), spacing))
+        gap = min(gap, ahead(forms, d, place, along, spacing))
     return gap

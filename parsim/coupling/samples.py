@@ -39,7 +39,6 @@ class BodySamples:
 
     def __init__(self, case, bodies, layers, units):
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
-        self._used = np.isin(range(3), case.axes)
         self._way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
         self._units = units
         sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
@@ -112,8 +111,10 @@ class BodySamples:
         load, *rims, a, b, c, d = np.split(domain.sum(values, units, rows, 8 * count), 8)
         return load, rims, np.concatenate([a, b, c, d], axis=1)
 
-    def answer(self, p, near, position, quaternion, load, added, lever, time):
+    def answer(self, p, near, pose, load, added, lever, step):
         """Find the accelerations of the bodies, give the samples those and their pressures; loads (bodies, 6), N, N m.
+
+        pose: position and quaternion; step: its beginning and length, s.
 
         The water's load is linear in a body's acceleration: `load` less `added` times its change. A load at the
         acceleration of the step before, which is the explicit way, grows without end where the water near a body
@@ -121,8 +122,9 @@ class BodySamples:
         """
         b = self.bodies
         change = np.zeros((len(b), 6))
-        given = Given(b.mass, b.inertia, quaternion, b.held(time), b.contact_load, b.spin)
-        accelerate_bodies(load, added, given, b.planar, self._gravity, b.acceleration, b.angular_acceleration, change)
+        (position, quaternion), others = pose, b.contact_load + b.spring_load
+        given = Given(b.mass, b.inertia, quaternion, others, b.spin, *b.constraints(*step))
+        accelerate_bodies(load, added, given, self._gravity, b.acceleration, b.angular_acceleration, change)
         respond(near.body, p.body, p.place, position, change, lever, p.p)
         self.place(p, position, quaternion)
         return load
@@ -137,8 +139,8 @@ class BodySamples:
         Water one layer thick has no pressure, so it can sink into what it lies on. The impulse is not given back: these
         are single particles.
         """
-        motion, shapes = self._motion(position, quaternion), (self.bodies.shape, self.bodies.half, self._used)
-        expel(self._beside, near.lists, p.body, motion, shapes, self._way_out, p.kinematics)
+        motion = self._motion(position, quaternion)
+        expel(self._beside, near.lists, p.body, motion, self.bodies.forms, self._way_out, p.kinematics)
 
 
 @kernel
@@ -179,12 +181,8 @@ def place_samples(kind, body, sample, offsets, motion, kinematics, out):
 
 
 @kernel
-def expel(at, lists, body, motion, shapes, way_out, kinematics):
-    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in `way_out` s.
-
-    `shapes`: numbers (b,), half edges (b, 3), m, and the axes used (3,).
-    """
-    shape, half, used = shapes
+def expel(at, lists, body, motion, forms, way_out, kinematics):
+    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in `way_out` s."""
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion
     x, y, z = kinematics.place
@@ -198,7 +196,7 @@ def expel(at, lists, body, motion, shapes, way_out, kinematics):
             last = b
             dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
             t = turn[b].ravel()
-            high, n = distance(shape[b], to_body(t, dx, dy, dz), (half[b, 0], half[b, 1], half[b, 2]), used)
+            high, n = distance(forms, b, to_body(t, dx, dy, dz))
             depth = -high
             if depth <= 0.0:
                 continue

@@ -63,7 +63,7 @@ class Solids:
         added = self.films.loads(domain, near, plate, *pose)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
         self.films.keep(*rims)
-        self._load = self.samples.answer(flow.particles, near, *pose, load, inertia, lever, time)
+        self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt))
 
     def driven(self, time):
         """Whether the gate moves at `time`, s."""
@@ -72,7 +72,7 @@ class Solids:
     def drive(self, flow, reaction, time, dt):
         """Account for the work that the gate does on the water, whose `reaction` on `near.gate` it is, in `dt`, s."""
         (force,) = flow.domain.sum(reaction[0][:, 2:], self._scales.force)
-        self.contacts.gate_work -= float(force) * self.gate.velocity(time) * dt
+        self.contacts.driven_work -= float(force) * self.gate.velocity(time) * dt
 
     def advance(self, flow, time, dt):
         """Move the bodies over `dt`, s, under what has pushed them, and place the samples there."""

@@ -11,6 +11,7 @@ from parsim.geometry.rotation import matrices, to_body
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 from parsim.particles.state import SURFACE
+from parsim.solid.shapes.forms import reordered
 from parsim.solid.shapes.kernels import distance
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class Counts:
     )
 
     def __init__(self, case: Case) -> None:
-        self._walls, self._used, self._slack = planes_of_walls(case), np.isin(range(3), case.axes), 0.25 * case.spacing
+        self._walls, self._slack = planes_of_walls(case), 0.25 * case.spacing
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
@@ -46,10 +47,8 @@ class Counts:
         bodies = (
             s.bodies.position[order],
             matrices(s.bodies.quaternion[order]),
-            s.bodies.shape[order],
-            s.bodies.half[order],
+            reordered(s.bodies.forms, order),
             s.bodies.radius.max(initial=0.0),
-            self._used,
         )
         misplaced(at, p.place, self._walls, bodies, gate, self._slack, count)
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
@@ -62,11 +61,11 @@ class Counts:
 def misplaced(at, place, walls, bodies, gate, slack, count):
     """Count fluid particles deeper than `slack`, m, in walls, bodies and gate into count (3,).
 
-    walls: see `geometry.faces.planes_of_walls`; bodies in the order of their x: centre (b, 3), turn (b, 3, 3), shape
-    (b,), half (b, 3), the largest radius, and the axes used (3,); gate: its low and high x, and where it ends below, m.
+    walls: see `geometry.faces.planes_of_walls`; bodies in the order of their x: centre (b, 3), turn (b, 3, 3),
+    forms, and the largest radius; gate: its low and high x, and where it ends below, m.
     """
     x, y, z = place
-    centre, turn, shape, half, radius, used = bodies
+    centre, turn, forms, radius = bodies
     along = centre[:, 0].copy()
     low, high, barrier = gate
     for i in at:
@@ -82,7 +81,7 @@ def misplaced(at, place, walls, bodies, gate, slack, count):
         while b < along.size and along[b] <= r[0] + radius:
             dx, dy, dz = r[0] - centre[b, 0], r[1] - centre[b, 1], r[2] - centre[b, 2]
             local = to_body(turn[b].ravel(), dx, dy, dz)
-            count[1] += distance(shape[b], local, (half[b, 0], half[b, 1], half[b, 2]), used)[0] < -slack
+            count[1] += distance(forms, b, local)[0] < -slack
             b += 1
         count[2] += low + slack < r[0] < high - slack and r[2] > barrier + slack
 

@@ -27,7 +27,7 @@ class Energy:
         kinetic_bodies="J",
         potential_bodies="J",
         elastic_contacts="J",
-        work_gate="J",
+        work_driven="J",
         dissipated_contacts="J",
         total="J",
     )
@@ -47,7 +47,7 @@ class Energy:
             b.potential_energy(self._gravity),
             c.elastic_energy(),
         ]
-        return [[s.dt, *parts, c.gate_work, c.dissipated, sum(parts)]]
+        return [[s.dt, *parts, c.driven_work, c.dissipated, sum(parts)]]
 
 
 @kernel

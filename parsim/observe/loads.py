@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.run.simulation import Simulation
 
-KINDS = ("water", "contact", "gravity")
+KINDS = ("water", "contact", "gravity", "joint")
 
 
 class Loads:

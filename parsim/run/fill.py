@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.case.fill import level_over, profile_shares
+from parsim.geometry.shuffle import scatter
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, Particles, make_id
 from parsim.run.near_bodies import Beside
@@ -25,15 +26,6 @@ if TYPE_CHECKING:
     from parsim.solid.bodies import Bodies
 
 _FINE = 4  # measuring points per spacing and axis
-
-
-def scatter(index: np.ndarray) -> np.ndarray:
-    """A fixed shuffle: a well-mixed 64-bit number of each index (splitmix64 of Steele, Lea & Flood 2014)."""
-    with np.errstate(over="ignore"):
-        z = (np.asarray(index).astype(np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
-        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        return z ^ (z >> np.uint64(31))
 
 
 def beside_bodies(points: Lattice, case: Case, bodies: Bodies) -> np.ndarray:

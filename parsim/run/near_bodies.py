@@ -10,6 +10,7 @@ from parsim.geometry.faces import walled_sides
 from parsim.geometry.nearby import near_points
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
+from parsim.solid.shapes.forms import Forms
 from parsim.solid.shapes.kernels import distance
 
 if TYPE_CHECKING:
@@ -22,13 +23,11 @@ _MOST = 16  # bodies that are close to one point
 
 
 class Bodies(NamedTuple):
-    """Position, turn by rows (b, 9), shape, half edges of the bodies; which of the axes they have faces along (3,)."""
+    """Position, turn by rows (b, 9) and forms of the bodies."""
 
     position: np.ndarray
     turn: np.ndarray
-    shape: np.ndarray
-    half: np.ndarray
-    used: np.ndarray
+    forms: Forms
 
 
 class Beside:
@@ -37,7 +36,7 @@ class Beside:
     def __init__(self, points: np.ndarray, case: Case, bodies: solid.Bodies) -> None:
         used = np.isin(range(3), case.axes)
         turn = matrices(bodies.quaternion).reshape(-1, 9)
-        self._bodies = Bodies(bodies.position, turn, bodies.shape, bodies.half, used)
+        self._bodies = Bodies(bodies.position, turn, bodies.forms)
         self._planes, self._spacing = _planes(case), case.spacing
         reach = bodies.radius + _MARGIN * case.spacing
         self._first, self._near = near_points(points, bodies.position, reach, used)
@@ -61,9 +60,8 @@ def _planes(case):
 @kernel
 def away(p, b, bodies):
     """Signed distance of p (3,) from body `b`, m, and the outward direction (3,)."""
-    c, t, h = bodies.position[b], bodies.turn[b], bodies.half[b]
-    local = to_body(t, p[0] - c[0], p[1] - c[1], p[2] - c[2])
-    high, out = distance(bodies.shape[b], local, (h[0], h[1], h[2]), bodies.used)
+    c, t = bodies.position[b], bodies.turn[b]
+    high, out = distance(bodies.forms, b, to_body(t, p[0] - c[0], p[1] - c[1], p[2] - c[2]))
     return high, to_global(t, out[0], out[1], out[2])
 
 

@@ -168,17 +168,20 @@ def exercise(part: str) -> None:
 
 
 def _touch(case):
-    """One step of the bodies and the gate of a case without water."""
+    """One step of the bodies and the gate of a case without water, soft and hard."""
     import numpy as np
 
     from parsim.boundary.gate import Gate
     from parsim.solid.bodies import from_case
     from parsim.solid.contacts import Contacts
+    from parsim.solid.laws.impulse import ImpulseLaw
 
-    bodies = from_case(case)
-    contacts = Contacts(bodies, case, [Gate(case)])
-    contacts.step(bodies, np.zeros((len(bodies), 6)), 0.0, 1e-4)
-    contacts.elastic_energy()
+    for law in (case.contacts.law, ImpulseLaw.model_validate("impulse")):
+        bodies = from_case(case)
+        given = case.model_copy(update={"contacts": case.contacts.model_copy(update={"law": law})})
+        contacts = Contacts(bodies, given, [Gate(case)])
+        contacts.step(bodies, np.zeros((len(bodies), 6)), 0.0, 1e-4)
+        contacts.elastic_energy()
 
 
 def _save_one_at_a_time():

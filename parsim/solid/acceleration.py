@@ -10,25 +10,30 @@ from parsim.machine.jit import kernel
 
 
 class Given(NamedTuple):
-    """Mass (nb,), moments of inertia (nb, 3), quaternion (nb, 4), held (nb,), contact load (nb, 6), spin (nb, 3)."""
+    """Mass (nb,), moments of inertia (nb, 3), quaternion (nb, 4), load of contacts and springs (nb, 6), spin (nb, 3);
+    free (nb, 6), 0 where a component of the acceleration is given, and what it is there, given (nb, 6); of what hangs
+    by a rod the unit vector along it (nb, 3), else 0, and its acceleration along that, inwards (nb,)."""
 
     mass: np.ndarray
     inertia: np.ndarray
     quaternion: np.ndarray
-    held: np.ndarray
     contact: np.ndarray
     spin: np.ndarray
+    free: np.ndarray
+    given: np.ndarray
+    rod: np.ndarray
+    inwards: np.ndarray
 
 
 @kernel
-def accelerate_bodies(load, added, bodies, planar, gravity, acceleration, angular, change):
+def accelerate_bodies(load, added, bodies, gravity, acceleration, angular, change):
     """Solve (m + added) a = load + added a0 + gravity + contacts - gyroscopic torque for every body.
 
     a0, then a: `acceleration`, `angular` (nb, 3); their difference: `change` (nb, 6), the `load` then less by added
     times that. By Cholesky, for its bits are the same everywhere.
     """
-    mass, inertia, quaternion, held, contact, spin = bodies
-    m, rhs = np.zeros((6, 6)), np.zeros(6)
+    mass, inertia, quaternion, contact, spin, free, given, rod, inwards = bodies
+    m, rhs, along = np.zeros((6, 6)), np.zeros(6), np.zeros(6)
     water, unit = np.zeros((6, 6)), np.eye(3)
     for b in range(mass.size):
         q = quaternion[b]
@@ -52,11 +57,25 @@ def accelerate_bodies(load, added, bodies, planar, gravity, acceleration, angula
             x, y, z = scaled(turn, own, unit[a, 0], unit[a, 1], unit[a, 2])
             m[3, 3 + a], m[4, 3 + a], m[5, 3 + a] = m[3, 3 + a] + x, m[4, 3 + a] + y, m[5, 3 + a] + z
         for a in range(6):
-            if held[b] or (planar and (a == 1 or a == 3 or a == 5)):
+            if free[b, a] == 0.0 and given[b, a] != 0.0:
+                for c in range(6):
+                    rhs[c] -= m[c, a] * given[b, a]
+        for a in range(6):
+            if free[b, a] == 0.0:
                 m[a, :] = 0.0
                 m[:, a] = 0.0
-                m[a, a], rhs[a] = 1.0, 0.0
-        solve_positive(m, rhs)
+                m[a, a], rhs[a] = 1.0, given[b, a]
+        factor(m)
+        solve(m, rhs)
+        if rod[b, 0] != 0.0 or rod[b, 1] != 0.0 or rod[b, 2] != 0.0:
+            for a in range(6):
+                along[a] = rod[b, a] * free[b, a] if a < 3 else 0.0
+            solve(m, along)
+            off, soft = inwards[b], 0.0
+            for a in range(3):
+                off, soft = off + rod[b, a] * rhs[a], soft + rod[b, a] * along[a]
+            for a in range(6):
+                rhs[a] -= off / soft * along[a]
         for a in range(3):
             change[b, a], change[b, 3 + a] = rhs[a] - acceleration[b, a], rhs[3 + a] - angular[b, a]
             acceleration[b, a], angular[b, a] = rhs[a], rhs[3 + a]
@@ -66,15 +85,21 @@ def accelerate_bodies(load, added, bodies, planar, gravity, acceleration, angula
 
 
 @kernel
-def solve_positive(m, x):
-    """Solve m y = x, m (n, n) symmetric and positive, in place: x (n,) becomes y, m its Cholesky factor."""
-    n = x.size
+def factor(m):
+    """The Cholesky factor of m (n, n), symmetric and positive, in its place, below the diagonal."""
+    n = len(m)
     for a in range(n):
         for c in range(a + 1):
             total = m[a, c]
             for e in range(c):
                 total -= m[a, e] * m[c, e]
             m[a, c] = math.sqrt(total) if a == c else total / m[c, c]
+
+
+@kernel
+def solve(m, x):
+    """Solve for x (n,), in its place, the equations whose matrix has the Cholesky factor m (n, n)."""
+    n = x.size
     for a in range(n):
         for e in range(a):
             x[a] -= m[a, e] * x[e]

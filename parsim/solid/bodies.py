@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 
-from parsim.geometry.rotation import from_angles, matrices
+from parsim.geometry.rotation import from_angles, matrices, turned
 from parsim.solid.kinetics import drift, kinetic, largest_speed, reaches
+from parsim.solid.shapes.forms import forms_of
+from parsim.solid.ties import joints_of
 
 _KEPT = (
     "position",
@@ -17,6 +19,8 @@ _KEPT = (
     "water_load",
     "contact_load",
     "gravity_load",
+    "spring_load",
+    "joint_load",
     "film",
     "left",
 )
@@ -26,13 +30,15 @@ _FAR = 1e6  # m that what has been taken out is moved on, out of reach of everyt
 class Bodies:
     """All bodies as arrays of nb rows; a 2D run is per metre of width and turns about y only (`planar`).
 
-    shapes: tables of `solid.shapes`; of these shape (nb,), NUMBER, half (nb, 3), m, radius (nb,), m, volume (nb,), m3.
+    shapes: tables of `solid.shapes`, and their `Forms`; of these radius (nb,), m, volume (nb,), m3.
     mass (nb,), kg; inertia (nb, 3), principal moments in the body frame, kg m2; material (nb,), number of the material;
     fixed (nb,), never moves; released (nb,), s, held in place before and then let go from rest. position (nb, 3), m;
     quaternion (nb, 4), body to global; velocity (nb, 3), m/s; spin (nb, 3), global axes, rad/s.
-    Of the last step: acceleration, angular_acceleration (nb, 3); water_load, contact_load, gravity_load (nb, 6), mean
-    force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin, and how well
-    each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out, inf before.
+    joints: what ties them to the world (`solid.ties`). Of the last step: acceleration, angular_acceleration (nb, 3);
+    water_load, contact_load, gravity_load, spring_load (to the world) and joint_load (all joints, those springs too)
+    (nb, 6): mean force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin,
+    and how well each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out,
+    inf before.
     """
 
     def __init__(
@@ -49,11 +55,11 @@ class Bodies:
         fixed=False,
         released=-math.inf,
         planar=False,
+        joints=(),
     ):
         self.shapes, self.planar = list(shapes), bool(planar)
         count = len(self.shapes)
-        self.shape = np.array([s.NUMBER for s in self.shapes], np.int64)
-        self.half = np.array([s.half for s in self.shapes], float).reshape(-1, 3)
+        self.forms = forms_of(self.shapes, self.planar)
         self.names = list(names) if names is not None else [f"body{b}" for b in range(count)]
         self.mass, self.released = _column(mass, count), _column(released, count)
         self.fixed, self.material = _column(fixed, count, bool), _column(material, count, np.int64)
@@ -68,6 +74,9 @@ class Bodies:
         self.acceleration, self.angular_acceleration = np.zeros((count, 3)), np.zeros((count, 3))
         self.film, self.left = np.zeros((count, 7)), np.full(count, math.inf)
         self.water_load, self.contact_load, self.gravity_load = (np.zeros((count, 6)) for _ in range(3))
+        self.spring_load, self.joint_load = (np.zeros((count, 6)) for _ in range(2))
+        frames = matrices(np.array([s.turn for s in self.shapes], float).reshape(-1, 4))
+        self.joints = joints_of(joints, self.names, self.position, self.quaternion, frames)
 
     def __len__(self):
         return len(self.mass)
@@ -85,6 +94,22 @@ class Bodies:
         """Which bodies do not move in a step that begins at `time`, s: (nb,) bool."""
         return self.fixed | (time < self.released) | self.gone
 
+    def constraints(self, time, dt):
+        """What joints and a plane make of accelerations in the step `dt`, s: the last four of `acceleration.Given`."""
+        free, given = self.joints.free.copy(), np.zeros((len(self), 6))
+        if self.planar:
+            free[:, [1, 3, 5]] = 0.0
+        free[self.held(time)] = 0.0
+        for b, velocity, spin in self.joints.drives(time, dt):
+            free[b] = 0.0
+            given[b] = (*(velocity - self.velocity[b]) / dt, *(spin - self.spin[b]) / dt)
+        rod, inwards = np.zeros((len(self), 3)), np.zeros(len(self))
+        for b in np.flatnonzero((self.joints.rod[:, 3] > 0.0) & free[:, 0].astype(bool)):
+            *pivot, length = self.joints.rod[b]
+            rod[b] = (self.position[b] - pivot) / length
+            inwards[b] = (self.velocity[b] @ self.velocity[b]) / length
+        return free, given, rod, inwards
+
     @property
     def gone(self):
         """Which bodies have been taken out: (nb,) bool."""
@@ -97,7 +122,7 @@ class Bodies:
         """
         if not len(self):
             return np.zeros(0, int), np.zeros((0, 6))
-        reach = reaches(self.shape, self.half, matrices(self.quaternion))
+        reach = reaches(self.forms, matrices(self.quaternion))
         below, above = self.position + reach < low, self.position - reach > high
         at = np.flatnonzero((below | above).any(1) & ~self.gone)
         rows = np.hstack([self.position[at], self.velocity[at]])
@@ -112,6 +137,8 @@ class Bodies:
                 self.water_load,
                 self.contact_load,
                 self.gravity_load,
+                self.spring_load,
+                self.joint_load,
                 self.film,
             ):
                 of[b] = 0.0
@@ -190,7 +217,7 @@ def from_case(case):
         shapes=[b.shape for b in bodies],
         mass=[case.mass_of(b) for b in bodies],
         position=[b.position for b in bodies],
-        quaternion=[from_angles(b.angles) for b in bodies],
+        quaternion=[turned(from_angles(b.angles), b.shape.turn) for b in bodies],
         velocity=[b.velocity for b in bodies],
         spin=[b.spin for b in bodies],
         names=[b.name for b in bodies],
@@ -198,6 +225,7 @@ def from_case(case):
         fixed=[b.fixed for b in bodies],
         released=[-math.inf if b.released is None else b.released for b in bodies],
         planar=case.dimensions == 2,
+        joints=case.joints,
     )
 
 

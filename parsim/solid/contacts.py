@@ -5,7 +5,10 @@ import math
 import numpy as np
 
 from parsim.geometry.faces import period, planes_of_walls
+from parsim.geometry.rotation import matrices
 from parsim.solid import table
+from parsim.solid.hard import advance_hard
+from parsim.solid.kinetics import kinetic
 from parsim.solid.laws.law import damping_of
 from parsim.solid.motion import begin, finish
 from parsim.solid.search import (
@@ -23,6 +26,8 @@ from parsim.solid.search import (
     sort_pairs,
 )
 from parsim.solid.shapes import elements_of
+from parsim.solid.shapes.forms import forms_of
+from parsim.solid.springs import held_by_springs
 from parsim.solid.substeps import advance, elastic
 from parsim.solid.tanks import LOST, recall_tanks, room_for_tanks
 
@@ -33,8 +38,9 @@ class Contacts:
     """Moves the bodies of a case, deterministically: every rank does the same and gets the same bits.
 
     driven: plates with half (3,), m, `centre` and `velocity` at a time (`parsim.boundary.gate.Gate`).
-    Attributes: dissipated, J, energy lost in contacts so far; gate_work, J, work of these on bodies and on water so
-    far; count, elements that touch; steps, sub-steps of the last step.
+    Attributes: dissipated, J, energy lost in contacts so far; driven_work, J, work of these on bodies and on water so
+    far; count, elements that touch; steps, sub-steps of the last step; residual, of hard bodies' impulses, the largest
+    so far.
     """
 
     def __init__(self, bodies, case, driven=()):
@@ -43,15 +49,20 @@ class Contacts:
         material = list(case.materials).index(case.wall_material) if case.materials else 0
         self._walls, self._period = _of_material(planes_of_walls(case, "bodies"), material), period(case)
         self._law, self._pair_law = case.contacts.law.NUMBER, _law(case, bodies)
+        law = case.contacts.law
+        self._hard, self.residual = (law.sweeps, law.residual) if law.INSTANT else None, 0.0
         first, self._elements, cell = elements_of(bodies)
         self._first = np.append(first, np.full(len(self._driven), first[-1]))  # what is driven has none
         self._table = _table(bodies, cell, self._driven, material)
+        self._forms = forms_of(bodies.shapes, bodies.planar, [plate.half for plate in self._driven])
         self._pairs, self._shift = room_for_pairs(64)
         self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
-        self._smallest = 2.0 * float(np.min(bodies.half)) if len(bodies) else math.inf
-        self.dissipated = self.gate_work = self._time = 0.0
+        self._smallest = 2.0 * _thinnest(bodies) if len(bodies) else math.inf
+        self.dissipated = self.driven_work = self._time = 0.0
         self.count, self.steps, self._state = 0, 0, np.zeros(2)
+        self._reacts = np.flatnonzero(bodies.joints.reacts)
+        self._by_joints = np.array([b for b, *_ in bodies.joints.driven], int)
         self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 3))
         self._pair, self._stored = np.zeros(0, np.int64), np.zeros((0, 2))
 
@@ -67,24 +78,40 @@ class Contacts:
         step.
         """
         bodies.water_load[:] = water_load
+        before = self._tied_now()
         number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
-        self.count, self.steps, lost, work = advance(
-            self._table, self._touch(), number, dt, reach, self._steps_per_contact, self._state
-        )
-        self.dissipated, self.gate_work, self._time = self.dissipated + lost, self.gate_work + work, time + dt
+        if self._hard:
+            self.count, self.steps, lost, work, left = advance_hard(self._table, self._touch(), number, dt, self._hard)
+            self.residual = max(self.residual, left)
+        else:
+            self.count, self.steps, lost, work = advance(
+                self._table, self._touch(), number, dt, reach, self._steps_per_contact, self._state
+            )
+        self.dissipated, self.driven_work, self._time = self.dissipated + lost, self.driven_work + work, time + dt
         self._remember(number, slots)
-        finish(self._table, dt, _pose(bodies), bodies.acceleration, bodies.angular_acceleration, bodies.contact_load)
+        finish(
+            self._table,
+            dt,
+            _pose(bodies),
+            bodies.acceleration,
+            bodies.angular_acceleration,
+            bodies.contact_load,
+            bodies.spring_load,
+        )
+        self._react(before, dt)
 
     def elastic_energy(self):
         """Energy, J, stored in the contacts at the present pose."""
         if not len(self.bodies):
             return 0.0
+        if self._hard:
+            return float(held_by_springs(self._table, self.bodies.joints.springs))
         number, _, _ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
         return float(elastic(self._table, self._touch(), number))
 
     def kept(self):
         """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
-        totals = np.array([self.dissipated, self.gate_work, self._time, *self._state])
+        totals = np.array([self.dissipated, self.driven_work, self._time, *self._state])
         return {
             "key": self._key.copy(),
             "element": self._element.copy(),
@@ -99,7 +126,7 @@ class Contacts:
         self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
         self._stored = np.array(kept["stored"], float).reshape(-1, 2)
         self._stretch = np.array(kept["stretch"], float).reshape(-1, 3)
-        self.dissipated, self.gate_work, self._time = (float(v) for v in kept["totals"][:3])
+        self.dissipated, self.driven_work, self._time = (float(v) for v in kept["totals"][:3])
         self._state = np.array(kept["totals"][3:], float)
         self.count = len(self._key)
 
@@ -110,8 +137,46 @@ class Contacts:
             m[row, table.POSITION : table.POSITION + 3] = plate.centre(time)
             m[row, table.VELOCITY + 2] = plate.velocity(time)
         begin(m, _pose(bodies), bodies.mass, held, bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
+        self._tie(bodies.joints, time, dt)
         number, reach = self._list_pairs(bodies.planar, dt)
         return number, self._list_slots(number, reach), reach
+
+    def _tie(self, joints, time, dt):
+        """Let the kernels know of what joints drive, and that springs pull all the time."""
+        m = self._table
+        for b in joints.springs[:, 0].astype(int):
+            if m[b, table.ROLE] == table.ALONE:
+                m[b, table.ROLE] = table.INVOLVED
+        for b, velocity, spin in joints.drives(time, dt):
+            m[b, table.ROLE], m[b, table.LIGHT] = table.DRIVEN, 0.0
+            m[b, table.INVERSE : table.INVERSE + 3] = m[b, table.GIVEN : table.GIVEN + 3] = 0.0
+            m[b, table.GIVEN + 3 : table.GIVEN + 6] = 0.0
+            m[b, table.VELOCITY : table.VELOCITY + 3], m[b, table.SPIN : table.SPIN + 3] = velocity, spin
+
+    def _tied_now(self):
+        """Momentum (k, 6), kg m/s, kg m2/s, of the bodies that react to joints, and place (d, 3), m, and energy, J, of
+        those that are driven."""
+        b, at, driven = self.bodies, self._reacts, self._by_joints
+        turn = matrices(b.quaternion[at])
+        own = np.einsum("bij,bj,bkj,bk->bi", turn, b.inertia[at], turn, b.spin[at])
+        momentum = np.hstack([b.mass[at, None] * b.velocity[at], own])
+        each = (getattr(b, name)[driven] for name in ("mass", "inertia", "quaternion", "velocity", "spin"))
+        energy = kinetic(*each) - float((b.mass[driven, None] * b.position[driven] @ self._gravity).sum())
+        return momentum, b.position[driven], energy
+
+    def _react(self, before, dt):
+        """Note the loads of joints, what changed the momentum besides other loads; count the work of what is driven.
+
+        That is what changed its energy besides the water; what it does to others is counted with the contacts.
+        """
+        if not self._reacts.size:
+            return
+        b, at, driven, now = self.bodies, self._reacts, self._by_joints, self._tied_now()
+        others = b.water_load[at] + b.contact_load[at] + b.gravity_load[at]
+        b.joint_load[at] = (now[0] - before[0]) / dt - others
+        by_water = float((b.water_load[driven, :3] * (now[1] - before[1])).sum())
+        by_water += dt * float((b.water_load[driven, 3:] * b.spin[driven]).sum())
+        self.driven_work += now[2] - before[2] - by_water
 
     def _touch(self):
         return Touch(
@@ -125,6 +190,8 @@ class Contacts:
             self._marks,
             self._slots,
             self._tanks,
+            self._forms,
+            self.bodies.joints.springs,
         )
 
     def _list_pairs(self, planar, dt):
@@ -169,23 +236,30 @@ def _pose(bodies):
 
 
 def _law(case, bodies):
-    """Table (3, n, n) over pairs of materials: what the law needs of them; damping ratio; friction.
+    """Table (4, n, n) over pairs of materials: what the law needs of them; damping ratio, of hard bodies
+    restitution; friction; shear.
 
     Restitution and friction of a pair are those given for it, else the means of the two (Canelas et al. 2016, doi
     10.1016/j.cpc.2016.05.003).
     """
-    used, each = [0, 2] if bodies.planar else [0, 1, 2], list(case.materials.values())
-    names = list(case.materials)
-    thinnest = float(bodies.half[:, used].min()) if len(bodies) else 1.0
+    each, names = list(case.materials.values()), list(case.materials)
+    thinnest = _thinnest(bodies) if len(bodies) else 1.0
     given = {frozenset(pair.between): pair for pair in case.contacts.pairs}
-    law = np.zeros((3, len(each), len(each)))
+    law = np.zeros((4, len(each), len(each)))
     for i, one in enumerate(each):
         for j, two in enumerate(each):
             law[0, i, j] = case.contacts.law.of_pair(one, two, thinnest)
             pair = given.get(frozenset((names[i], names[j])))
-            law[1, i, j] = damping_of(_of_pair("restitution", one, two, pair))
+            restitution = _of_pair("restitution", one, two, pair)
+            law[1, i, j] = restitution if case.contacts.law.INSTANT else damping_of(restitution)
             law[2, i, j] = _of_pair("friction", one, two, pair)
+            law[3, i, j] = case.contacts.law.shear(one, two)
     return law
+
+
+def _thinnest(bodies):
+    """Half the least width of any body, m."""
+    return min(shape.thinnest(bodies.planar) for shape in bodies.shapes)
 
 
 def _of_pair(key, one, two, pair):
@@ -202,10 +276,15 @@ def _table(bodies, cell, driven, material):
     """The kernels' copy of the bodies, then of what is `driven`, upright boxes of one material."""
     count = len(bodies)
     out = np.zeros((count + len(driven), table.WIDTH))
-    for at, values in ((table.HALF, bodies.half), (table.INERTIA, bodies.inertia), (table.CELL, cell)):
+    for at, values in ((table.HALF, bodies.forms.half), (table.INERTIA, bodies.inertia), (table.CELL, cell)):
         out[:count, at : at + 3] = values
     out[:count, table.MATERIAL], out[:count, table.RADIUS] = bodies.material, bodies.radius
-    out[:count, table.SHAPE] = bodies.shape
+    out[:count, table.SHAPE] = bodies.forms.shape
+    joints = bodies.joints
+    out[:, table.FREE : table.FREE + 6] = 1.0
+    out[:count, table.FREE : table.FREE + 6], out[:count, table.ROD : table.ROD + 4] = joints.free, joints.rod
+    for b, *_ in joints.driven:
+        out[b, table.FREE : table.FREE + 6] = 0.0
     for row, plate in enumerate(driven, count):
         out[row, table.ROLE], out[row, table.MATERIAL] = table.DRIVEN, material
         out[row, table.HALF : table.HALF + 3] = plate.half

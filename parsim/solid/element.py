@@ -7,8 +7,6 @@ import math
 
 from parsim.machine.jit import kernel
 
-TANGENTIAL = 2.0 / 7.0  # tangential over normal stiffness (Schaefer, Dippel & Wolf 1996)
-
 
 @kernel
 def normal_force(stiffness, dashpot, area, depth, speed):

@@ -10,13 +10,13 @@ from parsim.solid.shapes.kernels import reach
 
 
 @kernel
-def reaches(shape, half, turn):
-    """Half extents (b, 3) along the axes of space, m, of bodies turned by `turn` (b, 3, 3)."""
-    out = np.empty((len(half), 3))
-    for b in range(len(half)):
+def reaches(forms, turn):
+    """How far bodies turned by `turn` (b, 3, 3) reach along the axes of space, to the farther side, m, (b, 3)."""
+    out = np.empty((len(turn), 3))
+    for b in range(len(turn)):
         for a in range(3):
-            along = (turn[b, a, 0], turn[b, a, 1], turn[b, a, 2])
-            out[b, a] = reach(shape[b], along, (half[b, 0], half[b, 1], half[b, 2]))
+            x, y, z = turn[b, a, 0], turn[b, a, 1], turn[b, a, 2]
+            out[b, a] = max(reach(forms, b, (x, y, z)), reach(forms, b, (-x, -y, -z)))
     return out
 
 

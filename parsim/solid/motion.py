@@ -1,16 +1,18 @@
 """Motion of rigid bodies: position Verlet, of order two, exact for constant force and free rotation.
 
 A step drifts by half of it, finds the forces there, kicks, drifts the other half. A body that touches nothing takes a
-step of the water at once.
+step of the water at once. Joints take part exactly: what hangs by a rod drifts along the circle that it would follow
+without forces, and kicks act across the rod; locked axes take no kick.
 """
 
 import math
 
-from parsim.geometry.rotation import free_turn, matrix, scaled
+from parsim.geometry.rotation import free_turn, matrix, scaled, turn_of, turned, unit
 from parsim.machine.jit import kernel
 from parsim.solid.table import (
     ALONE,
     DRIVEN,
+    FREE,
     GIVEN,
     HELD,
     INERTIA,
@@ -22,16 +24,23 @@ from parsim.solid.table import (
     MEAN,
     MOMENTUM,
     POSITION,
+    PULL,
     QUATERNION,
-    RADIUS,
+    ROD,
     ROLE,
+    RUSH,
     SPIN,
+    TIED,
     TOTAL,
     TURN,
     VELOCITY,
+    along_rod,
+    hangs,
+    is_tied,
     quaternion_of,
     three,
     turn_at,
+    turns_freely,
 )
 
 
@@ -65,12 +74,13 @@ def begin(m, pose, mass, held, water, gravity, planar, weight):
         m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
     for b in range(len(m)):
         for k in range(6):
-            m[b, TOTAL + k] = m[b, MEAN + k] = 0.0
+            m[b, TOTAL + k] = m[b, MEAN + k] = m[b, TIED + k] = m[b, LOAD + k] = m[b, PULL + k] = 0.0
 
 
 @kernel
-def finish(m, dt, pose, acceleration, angular, contact):
-    """Hand pose, velocity and spin back, with the accelerations and the mean contact load of the step `dt`, s."""
+def finish(m, dt, pose, acceleration, angular, contact, pull):
+    """Hand pose, velocity and spin back, with the accelerations and the mean loads of the step `dt`, s, by contacts and
+    by springs to the world."""
     position, quaternion, velocity, spin = pose
     for b in range(len(position)):
         for a in range(3):
@@ -81,7 +91,7 @@ def finish(m, dt, pose, acceleration, angular, contact):
         for a in range(4):
             quaternion[b, a] = m[b, QUATERNION + a]
         for k in range(6):
-            contact[b, k] = m[b, TOTAL + k] / dt
+            contact[b, k], pull[b, k] = m[b, TOTAL + k] / dt, m[b, TIED + k] / dt
 
 
 @kernel
@@ -94,37 +104,133 @@ def _update_spin(m, b):
 @kernel
 def drift(m, b, dt):
     """Move body `b` freely over `dt`, s."""
-    for a in range(3):
-        m[b, POSITION + a] += dt * m[b, VELOCITY + a]
-    momentum = three(m, b, MOMENTUM)
-    if momentum[0] == 0.0 and momentum[1] == 0.0 and momentum[2] == 0.0:
-        return
-    q = free_turn(quaternion_of(m, b), momentum, three(m, b, INVERSE), dt)
+    if hangs(m, b):
+        _swing(m, b, dt)
+    else:
+        for a in range(3):
+            m[b, POSITION + a] += dt * m[b, VELOCITY + a]
+    if turns_freely(m, b):
+        momentum = three(m, b, MOMENTUM)
+        if momentum[0] == 0.0 and momentum[1] == 0.0 and momentum[2] == 0.0:
+            return
+        q = free_turn(quaternion_of(m, b), momentum, three(m, b, INVERSE), dt)
+    else:
+        q = unit(turned(turn_of(dt * m[b, SPIN], dt * m[b, SPIN + 1], dt * m[b, SPIN + 2]), quaternion_of(m, b)))
     t = matrix(q)
     for k in range(4):
         m[b, QUATERNION + k] = q[k]
     for k in range(9):
         m[b, TURN + k] = t[k]
-    _update_spin(m, b)
+    if turns_freely(m, b):
+        _update_spin(m, b)
+    else:
+        _update_momentum(m, b)
+
+
+@kernel
+def _update_momentum(m, b):
+    w = three(m, b, SPIN)
+    h = scaled(turn_at(m, b), three(m, b, INERTIA), w[0], w[1], w[2])
+    m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
+
+
+@kernel
+def _swing(m, b, dt):
+    """Move the centre of body `b` along the great circle around its pivot that it would follow without forces."""
+    e, v, rod = along_rod(m, b), three(m, b, VELOCITY), m[b, ROD + 3]
+    along = v[0] * e[0] + v[1] * e[1] + v[2] * e[2]
+    x, y, z = v[0] - along * e[0], v[1] - along * e[1], v[2] - along * e[2]
+    speed = math.sqrt(x * x + y * y + z * z)
+    if speed == 0.0:
+        return
+    angle, x, y, z = speed * dt / rod, x / speed, y / speed, z / speed
+    half = math.sin(0.5 * angle)
+    c, s = 1.0 - 2.0 * half * half, math.sin(angle)
+    for a, (out, across) in enumerate(((e[0], x), (e[1], y), (e[2], z))):
+        m[b, POSITION + a] = m[b, ROD + a] + rod * (c * out + s * across)
+        m[b, VELOCITY + a] = speed * (c * across - s * out)
+
+
+@kernel
+def answer(m, b, f):
+    """(acceleration (3,), m/s2, angular acceleration (3,), rad/s2) of body `b` at rest by the load `f` (6,), N, N m.
+
+    Joints take from the load what they do not let it do.
+    """
+    x, y, z = f[0], f[1], f[2]
+    if hangs(m, b):
+        e = along_rod(m, b)
+        along = x * e[0] + y * e[1] + z * e[2]
+        x, y, z = x - along * e[0], y - along * e[1], z - along * e[2]
+    light = m[b, LIGHT]
+    a = (light * m[b, FREE] * x, light * m[b, FREE + 1] * y, light * m[b, FREE + 2] * z)
+    if turns_freely(m, b):
+        return a, scaled(turn_at(m, b), three(m, b, INVERSE), f[3], f[4], f[5])
+    return a, _guided_turn(m, b, f[3], f[4], f[5])
+
+
+@kernel
+def _guided_turn(m, b, x, y, z):
+    """Angular acceleration of a body that may turn about some axes of space only, by the torque (x, y, z), N m."""
+    if m[b, LIGHT] == 0.0:
+        return 0.0, 0.0, 0.0
+    t, own = turn_at(m, b), three(m, b, INERTIA)
+    p, q, r = m[b, FREE + 3], m[b, FREE + 4], m[b, FREE + 5]
+    (xx, xy, xz), (_, yy, yz) = scaled(t, own, 1.0, 0.0, 0.0), scaled(t, own, 0.0, 1.0, 0.0)
+    zz = scaled(t, own, 0.0, 0.0, 1.0)[2]
+    xx, yy, zz = (xx if p else 1.0), (yy if q else 1.0), (zz if r else 1.0)
+    xy, xz, yz, x, y, z = xy * p * q, xz * p * r, yz * q * r, x * p, y * q, z * r
+    a, b_, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - yy * xz  # cofactors
+    scale = 1.0 / (xx * a + xy * b_ + xz * c)
+    d, e, f = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    return scale * (a * x + b_ * y + c * z), scale * (b_ * x + d * y + e * z), scale * (c * x + e * y + f * z)
 
 
 @kernel
 def kick(m, b, dt):
     """Change the momenta of body `b` by its loads over `dt`, s."""
-    for a in range(3):
-        m[b, VELOCITY + a] += dt * m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
-        m[b, MOMENTUM + a] += dt * (m[b, GIVEN + 3 + a] + m[b, LOAD + 3 + a])
+    if is_tied(m, b):
+        _kick_tied(m, b, dt)
+    else:
+        for a in range(3):
+            m[b, VELOCITY + a] += dt * m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
+            m[b, MOMENTUM + a] += dt * (m[b, GIVEN + 3 + a] + m[b, LOAD + 3 + a])
+        _update_spin(m, b)
     for k in range(6):
-        m[b, TOTAL + k] += dt * m[b, LOAD + k]
-    _update_spin(m, b)
+        m[b, TOTAL + k] += dt * (m[b, LOAD + k] - m[b, PULL + k])
+        m[b, TIED + k] += dt * m[b, PULL + k]
+
+
+@kernel
+def _kick_tied(m, b, dt):
+    a, w = answer(m, b, loads_on(m, b))
+    for k in range(3):
+        m[b, VELOCITY + k] += dt * a[k]
+    if turns_freely(m, b):
+        for k in range(3):
+            m[b, MOMENTUM + k] += dt * (m[b, GIVEN + 3 + k] + m[b, LOAD + 3 + k])
+        _update_spin(m, b)
+        return
+    for k in range(3):
+        m[b, SPIN + k] += dt * w[k]
+    _update_momentum(m, b)
+
+
+@kernel
+def loads_on(m, b):
+    """Force and torque on body `b` now, six numbers."""
+    f, g, t, u = three(m, b, GIVEN), three(m, b, LOAD), three(m, b, GIVEN + 3), three(m, b, LOAD + 3)
+    return f[0] + g[0], f[1] + g[1], f[2] + g[2], t[0] + u[0], t[1] + u[1], t[2] + u[2]
 
 
 @kernel
 def clear_loads(m):
-    """Forget the contact loads of all rows."""
+    """Forget the contact loads of all rows, but for what they do to the centres."""
     for b in range(len(m)):
+        for a in range(3):
+            m[b, RUSH + a] = m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
         for k in range(6):
-            m[b, LOAD + k] = m[b, LOSS + k] = 0.0
+            m[b, LOAD + k] = m[b, LOSS + k] = m[b, PULL + k] = 0.0
 
 
 @kernel
@@ -153,11 +259,9 @@ def foresee(m, dt):
             for a in range(3):
                 m[b, MEAN + a], m[b, MEAN + 3 + a] = m[b, VELOCITY + a], m[b, SPIN + a]
         elif m[b, ROLE] == INVOLVED:
-            t, u = three(m, b, GIVEN + 3), three(m, b, LOAD + 3)
-            turn = scaled(turn_at(m, b), three(m, b, INVERSE), t[0] + u[0], t[1] + u[1], t[2] + u[2])
+            push, turn = answer(m, b, loads_on(m, b))
             for a in range(3):
-                push = m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
-                m[b, MEAN + a] = m[b, VELOCITY + a] + 0.5 * dt * push
+                m[b, MEAN + a] = m[b, VELOCITY + a] + 0.5 * dt * push[a]
                 m[b, MEAN + 3 + a] = m[b, SPIN + a] + 0.5 * dt * turn[a]
 
 
@@ -174,28 +278,3 @@ def kick_involved(m, dt):
             for k in range(6):
                 work -= dt * m[b, LOAD + k] * m[b, MEAN + k]
     return lost, work
-
-
-@kernel
-def length(v):
-    """Length of a vector of three."""
-    return math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-
-
-@kernel
-def speed_of(m, b, dt):
-    """Bound of the speed of any point of body `b` within `dt`, s, without contacts, m/s."""
-    inverse = three(m, b, INVERSE)
-    faster = dt * length(three(m, b, GIVEN + 3)) * max(inverse[0], inverse[1], inverse[2])
-    spin = length(three(m, b, SPIN)) + faster
-    return length(three(m, b, VELOCITY)) + dt * length(three(m, b, GIVEN)) * m[b, LIGHT] + m[b, RADIUS] * spin
-
-
-@kernel
-def bound_of_speed(m, dt):
-    """Largest speed, m/s, that a point of anything can have within `dt`, s, before anything is hit."""
-    largest = 0.0
-    for b in range(len(m)):
-        if m[b, ROLE] != HELD:
-            largest = max(largest, speed_of(m, b, dt))
-    return largest

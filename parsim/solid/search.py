@@ -6,9 +6,9 @@ edges, or where something round touches), KEY (a, then b; pairs are in its order
 to its periodic image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
-INDEX (its row in the table of elements, -1: none), TOUCHING; `slots`: DEPTH, m, AREA, m2, POINT, m,
-STRETCH, m, of its friction spring. Walls, rows of eleven: normal inwards, level (normal . x > level inside), the
-lowest and highest corner of where they are, and WALL_MATERIAL.
+INDEX (its row in the table of elements; -1: none, -2 - k: point k along the curved side), TOUCHING; `slots`: DEPTH, m,
+AREA, m2, POINT, m, STRETCH, m, of its friction spring. Walls, rows of eleven: normal inwards, level (normal . x > level
+inside), the lowest and highest corner of where they are, and WALL_MATERIAL.
 """
 
 import math
@@ -18,9 +18,10 @@ import numpy as np
 
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
-from parsim.solid.motion import bound_of_speed
-from parsim.solid.separation import ROUND_A, best_feature, between, ramp_of, reach_along
-from parsim.solid.shapes.kernels import reach, touches_at_one_point
+from parsim.solid.separation import ROUND_A, ROUND_B, best_feature, between, ramp_of, reach_along
+from parsim.solid.shapes.forms import Forms
+from parsim.solid.shapes.kernels import along_side, reach, touches_at_one_point
+from parsim.solid.speeds import bound_of_speed
 from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, pose_of, shape_of, three
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
@@ -33,7 +34,8 @@ _MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 class Touch(NamedTuple):
     """What may touch, and with what: the tables above; first, elements: see `shapes.elements_of`; law: its number;
-    pair_law: see `forces.press`; tanks: see `tanks`."""
+    pair_law: see `forces.press`; tanks: see `tanks`; forms: see `shapes.forms`; springs: see
+    `ties.Joints`."""
 
     first: np.ndarray
     elements: np.ndarray
@@ -45,6 +47,8 @@ class Touch(NamedTuple):
     marks: np.ndarray
     slots: np.ndarray
     tanks: np.ndarray
+    forms: Forms
+    springs: np.ndarray
 
 
 class Reach(NamedTuple):
@@ -76,7 +80,7 @@ def near_pairs(m, touch, period, planar, dt, place, order):
     """
     walls = touch.walls
     count, number = place.size, 0
-    extent, widest = _extents(m, count)
+    extent, widest = _extents(m, touch.forms, count)
     far = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
     near = Reach(period, extent, far, planar)
     for row in range(count):
@@ -95,27 +99,29 @@ def near_pairs(m, touch, period, planar, dt, place, order):
         for driven in range(count, len(m)):
             number = _add(m, touch, number, a, driven, near)
         for w in range(len(walls)):
-            if m[a, ROLE] > DRIVEN and above(m, walls, a, w) < far:
+            if m[a, ROLE] > DRIVEN and above(m, touch, a, w) < far:
                 feature = ROUND_A if touches_at_one_point(shape_of(m, a)) else 0
                 number = _note(m, touch, number, a, -1 - w, feature, (0.0, 0.0, 0.0))
     return number, far
 
 
 @kernel
-def above(m, walls, a, w):
+def above(m, touch, a, w):
     """Distance of body `a` from wall `w`."""
+    walls = touch.walls
     x, y, z = walls[w, 0], walls[w, 1], walls[w, 2]
     centre = m[a, POSITION] * x + m[a, POSITION + 1] * y + m[a, POSITION + 2] * z
-    return centre - reach_along(m, a, x, y, z) - walls[w, 3]
+    return centre - reach_along(m, touch.forms, a, -x, -y, -z) - walls[w, 3]
 
 
 @kernel
-def _extents(m, count):
-    """(half extents (rows, 3) along the axes of all rows, the largest along x of the first `count`)."""
+def _extents(m, forms, count):
+    """(how far all rows reach along the axes, to the farther side, (rows, 3); most along x of the first `count`)."""
     extent, widest = np.zeros((len(m), 3)), 0.0
     for b in range(len(m)):
         for a in range(3):
-            extent[b, a] = reach(shape_of(m, b), three(m, b, TURN + 3 * a), three(m, b, HALF))
+            x, y, z = three(m, b, TURN + 3 * a)
+            extent[b, a] = max(reach(forms, b, (x, y, z)), reach(forms, b, (-x, -y, -z)))
         if b < count:
             widest = max(widest, extent[b, 0])
     return extent, widest
@@ -135,7 +141,7 @@ def _add(m, touch, number, a, b, near):
         if abs(apart - moved[k]) > extent[a, k] + extent[b, k] + far:
             return number
     by = (moved[0], moved[1], moved[2])
-    feature, distance = best_feature(m, a, b, by, planar)
+    feature, distance = best_feature(m, touch.forms, a, b, by, planar)
     return _note(m, touch, number, a, b, feature, by) if distance <= far else number
 
 
@@ -165,10 +171,10 @@ def fill_slots(m, touch, number, reach):
 
     Beyond the room in `slots` they are counted only. 10 ns an element of the bodies in a pair.
     """
-    first, pairs, slot = touch.first, touch.pairs, 0
+    pairs, slot = touch.pairs, 0
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
-        own, spot = first[a + 1] - first[a], pairs[c, FEATURE] >= ROUND_A
+        own, spot = _watched(m, touch, a), ROUND_A <= pairs[c, FEATURE] <= ROUND_B
         pairs[c, FIRST] = slot
         if not spot:
             slot = _list(m, touch, c, (a, b, 0), reach, slot)
@@ -176,10 +182,16 @@ def fill_slots(m, touch, number, reach):
         if b >= 0:
             if not spot:
                 slot = _list(m, touch, c, (b, a, own), reach, slot)
-            own += first[b + 1] - first[b]
+            own += _watched(m, touch, b)
         pairs[c, LAST] = slot
         slot = _mark(touch, slot, pairs[c, KEY], own, -1)
     return slot
+
+
+@kernel
+def _watched(m, touch, b):
+    """How many points of body `b` are watched: its elements, and those that move along its curved side."""
+    return touch.first[b + 1] - touch.first[b] + along_side(shape_of(m, b))
 
 
 @kernel
@@ -215,6 +227,8 @@ def _list(m, touch, c, which, reach, slot):
                 near = near and abs(q[k]) < m[other, HALF + k] + far
         if near:
             slot = _mark(touch, slot, pairs[c, KEY], offset + index - first[body], index)
+    for k in range(along_side(shape_of(m, body))):
+        slot = _mark(touch, slot, pairs[c, KEY], offset + first[body + 1] - first[body] + k, -2 - k)
     return slot
 
 

@@ -1,4 +1,4 @@
-"""Where two bodies touch: for boxes the common normal by separating axes, and the depth of a point along it.
+"""Where two bodies touch: for boxes the common normal by separating axes, for others between their cores.
 
 One normal for all elements of a pair keeps elements near an edge from choosing the wrong face. It is one of 15
 directions (Gottschalk, Lin & Manocha 1996, OBBTree): the face normals of both boxes and the cross products of their
@@ -9,11 +9,12 @@ import math
 
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
-from parsim.solid.shapes.kernels import distance, reach, touches_at_one_point
+from parsim.solid.cores import between_cores
+from parsim.solid.shapes.kernels import LATERAL, distance, is_box, reach, touches_at_one_point
 from parsim.solid.table import CELL, HALF, POSITION, TURN, shape_of, three, turn_at
 
 ROUND_A, ROUND_B = 15, 16  # features: a, or b, is round and touches the nearest point of the other
-_LATERAL = 0.1  # cosine below which a face lies along the normal and does not bound the depth
+CORES = 17  # the direction between the cores
 _EDGE_BIAS = 0.05  # an edge-edge normal must be better than a face normal by this share
 _PARALLEL = 0.05  # sine of the angle below which edges are parallel: their normal would turn 20 times as fast as they
 
@@ -25,9 +26,9 @@ def axis(m, b, i):
 
 
 @kernel
-def reach_along(m, b, x, y, z):
-    """Half extent of body `b` along the unit vector (x, y, z)."""
-    return reach(shape_of(m, b), to_body(turn_at(m, b), x, y, z), three(m, b, HALF))
+def reach_along(m, forms, b, x, y, z):
+    """How far body `b` reaches along the unit vector (x, y, z) from its centre, m."""
+    return reach(forms, b, to_body(turn_at(m, b), x, y, z))
 
 
 @kernel
@@ -57,77 +58,84 @@ def between(m, a, b, shift):
 
 
 @kernel
-def separation(m, a, b, shift, feature):
+def separation(m, forms, a, b, shift, feature):
     """(distance of a and b along a feature, unit normal from b to a); negative where they overlap.
 
     Edges that have turned parallel since they were chosen, within a step, no longer cross: infinitely far apart.
     """
     if feature == ROUND_A:
-        return gap_to_round(m, a, b, shift)
+        return gap_to_round(m, forms, a, b, shift)
     if feature == ROUND_B:
-        apart, x, y, z = gap_to_round(m, b, a, (-shift[0], -shift[1], -shift[2]))
+        apart, x, y, z = gap_to_round(m, forms, b, a, (-shift[0], -shift[1], -shift[2]))
         return apart, -x, -y, -z
-    x, y, z = direction(m, a, b, feature)
-    if x == 0.0 and y == 0.0 and z == 0.0:
-        return math.inf, x, y, z
     dx, dy, dz = between(m, a, b, shift)
-    along = dx * x + dy * y + dz * z
-    if along < 0.0:
-        along, x, y, z = -along, -x, -y, -z
-    return along - reach_along(m, a, x, y, z) - reach_along(m, b, x, y, z), x, y, z
+    if feature == CORES:
+        x, y, z = between_cores(m, forms, a, b, (dx, dy, dz))[0]
+        along = dx * x + dy * y + dz * z
+    else:
+        x, y, z = direction(m, a, b, feature)
+        if x == 0.0 and y == 0.0 and z == 0.0:
+            return math.inf, x, y, z
+        along = dx * x + dy * y + dz * z
+        if along < 0.0:
+            along, x, y, z = -along, -x, -y, -z
+    return along - reach_along(m, forms, a, -x, -y, -z) - reach_along(m, forms, b, x, y, z), x, y, z
 
 
 @kernel
-def gap_to_round(m, a, b, shift):
+def gap_to_round(m, forms, a, b, shift):
     """(distance of the round body a from the surface of b moved by `shift`, unit normal from b to a)."""
     x, y, z = between(m, a, b, shift)
     t = turn_at(m, b)
-    high, n = distance(shape_of(m, b), to_body(t, x, y, z), three(m, b, HALF), (True, True, True))
+    high, n = distance(forms, b, to_body(t, x, y, z))
     x, y, z = to_global(t, n[0], n[1], n[2])
     return high - m[a, HALF], x, y, z
 
 
 @kernel
-def best_feature(m, a, b, shift, planar):
+def best_feature(m, forms, a, b, shift, planar):
     """(feature, distance) of the direction along which a and b are farthest apart. 0.3 us.
 
     In 2D only the axes in the plane. Edge pairs must win clearly, as they tie with faces where boxes lie flat. Where
-    one is round, the direction is that to the nearest point of the other.
+    one is round, the direction is that to the nearest point of the other; where one is no box, that between cores.
     """
     for body, feature in ((a, ROUND_A), (b, ROUND_B)):
         if touches_at_one_point(shape_of(m, body)):
-            return feature, separation(m, a, b, shift, feature)[0]
+            return feature, separation(m, forms, a, b, shift, feature)[0]
+    if not is_box(shape_of(m, a)) or not is_box(shape_of(m, b)):
+        return CORES, separation(m, forms, a, b, shift, CORES)[0]
     best, farthest = 0, -math.inf
     for feature in range(6):
         if planar and feature % 3 == 1:
             continue
-        apart = separation(m, a, b, shift, feature)[0]
+        apart = separation(m, forms, a, b, shift, feature)[0]
         if apart > farthest:
             best, farthest = feature, apart
     if planar:
         return best, farthest
     needed = farthest + _EDGE_BIAS * abs(farthest)
     for feature in range(6, 15):
-        apart = separation(m, a, b, shift, feature)[0]
+        apart = separation(m, forms, a, b, shift, feature)[0]
         if needed < apart < math.inf:
             best, farthest, needed = feature, apart, apart
     return best, farthest
 
 
 @kernel
-def overlap_share(m, a, b, shift, x, y, z, ramp):
-    """Share (0 to 1) of its stiffness that a contact of normal (x, y, z) has: less where it is narrower than `ramp`.
+def overlap_share(m, forms, ab, shift, n, ramp):
+    """Share (0 to 1) of its stiffness that a contact of normal `n` (3,) has: less where it is narrower than `ramp`.
 
     Boxes that overlap like two corners of a raft, by next to nothing in two directions, hardly feel each other.
     """
+    a, b = ab
     share = 1.0
     dx, dy, dz = between(m, a, b, shift)
     for feature in range(6):
         u, v, w = direction(m, a, b, feature)
-        width = reach_along(m, a, u, v, w) + reach_along(m, b, u, v, w) - abs(dx * u + dy * v + dz * w)
+        width = reach_along(m, forms, a, u, v, w) + reach_along(m, forms, b, u, v, w) - abs(dx * u + dy * v + dz * w)
         if width <= 0.0:
             return 0.0
-        if abs(u * x + v * y + w * z) < _LATERAL:
+        if abs(u * n[0] + v * n[1] + w * n[2]) < LATERAL:
             share = min(share, width / ramp)
     return share
 
@@ -136,25 +144,6 @@ def overlap_share(m, a, b, shift, x, y, z, ramp):
 def ramp_of(m, a, b):
     """Width, m, over which the area of elements fades at the rim of a contact: a quarter of their distance."""
     return 0.25 * min(m[a, CELL], m[a, CELL + 2], m[b, CELL], m[b, CELL + 2])
-
-
-@kernel
-def depth_in_box(edges, p, d, ramp):
-    """(distance from point `p` along the unit vector `d` to the surface of a box, weight); p, d in the box's frame.
-
-    The point counts fully inside, less with its distance outside faces that lie along d (over `ramp`, so that a
-    sideways motion changes the force smoothly), else not at all: weight 0.
-    """
-    depth, weight = math.inf, 1.0
-    for i in range(3):
-        if abs(d[i]) < _LATERAL:
-            weight = min(weight, 1.0 + (edges[i] - abs(p[i])) / ramp)
-        else:
-            ahead = p[i] if d[i] > 0.0 else -p[i]
-            if edges[i] + ahead < 0.0:
-                return 0.0, 0.0
-            depth = min(depth, (edges[i] - ahead) / abs(d[i]))
-    return depth, (weight if depth > 0.0 and weight > 0.0 else 0.0)
 
 
 @kernel

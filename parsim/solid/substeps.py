@@ -4,16 +4,15 @@ import math
 
 import numpy as np
 
-from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
-from parsim.solid.element import TANGENTIAL
-from parsim.solid.forces import compliance, free_time, hardness, hardness_now, press, relative_motion, velocity_at
+from parsim.solid.forces import compliance, free_time, hardness, press, relative_motion, velocity_at
 from parsim.solid.laws.foundation import FOUNDATION
-from parsim.solid.motion import alone, drift_involved, kick_involved
+from parsim.solid.motion import alone, answer, drift_involved, kick_involved, loads_on
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, STRETCH, A, B
 from parsim.solid.separation import ROUND_A, overlap_share, ramp_of
-from parsim.solid.table import GIVEN, INVERSE, LIGHT, LOAD, POSITION, three, turn_at
-from parsim.solid.tanks import STORED, restrain
+from parsim.solid.springs import held_by_springs, rate_of_springs
+from parsim.solid.table import POSITION, three
+from parsim.solid.tanks import SHARE, STORED, restrain
 from parsim.solid.touch import centre_of, measure, normal_of, show
 
 _AT_REST = 5  # steps in half a period of what lies or is pressed together
@@ -31,21 +30,22 @@ def advance(m, touch, number, dt, reach, steps_per_contact, state):
     of three at rest 1.3 ms (76 sub-steps); 9 blocks pressed together, 20 pairs, 2.7 ms (45 sub-steps).
     """
     alone(m, dt)
-    if number == 0:
+    if number == 0 and len(touch.springs) == 0:
+        drift_involved(m, dt)
         lost, state[0], state[1] = state[0], 0.0, 0.0
         return 0, 1, lost, 0.0
     lost, steps, work = state[0], 0, 0.0
-    touching = press(m, touch, number, 0.0)
+    touching = press(m, touch, number, 0.0, 0.0)
     longest = _longest(m, touch, number, steps_per_contact, reach)
     rest, pending = dt, 0.0
     while rest > 0.0:
         count = max(math.ceil(rest / longest), 1)
         span = rest / count
-        if touching == 0 and count > 1:
+        if touching == 0 and count > 1 and len(touch.springs) == 0:
             span = min(max(span, free_time(m, touch, number, dt) - pending), rest)
         drift_involved(m, pending + 0.5 * span)
         lapse = state[1] + 0.5 * span
-        touching = press(m, touch, number, lapse)
+        touching = press(m, touch, number, lapse, span)
         state[0] = restrain(m, touch, number, span)
         heat, by_driven = kick_involved(m, span)
         lost, work, steps = lost + heat, work + by_driven, steps + 1
@@ -64,16 +64,17 @@ def _longest(m, touch, number, steps_per_contact, reach):
     need only be stable: they take _AT_REST steps.
     """
     pairs, shift = touch.pairs, touch.shift
-    rate, largest = np.zeros((len(m), 3)), 0.0
+    rate, largest = np.zeros((len(m), 3)), rate_of_springs(m, touch.springs) * steps_per_contact * steps_per_contact
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
         apart, x, y, z = normal_of(m, touch, c)
-        area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
+        area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
         calm = _calm(m, touch, c, (x, y, z), area) if area > 0.0 else False
-        rigid = _rate(m, touch, c, (x, y, z))
+        rigid = _rate(m, touch, c, (x, y, z), apart)
         if b >= 0 and apart < 0.0 and pairs[c, FEATURE] < ROUND_A:
             ramp = 4.0 * ramp_of(m, a, b)
-            rigid *= min(overlap_share(m, a, b, three(shift, c, 0), x, y, z, ramp) + reach / ramp, 1.0)
+            share = overlap_share(m, touch.forms, (a, b), three(shift, c, 0), (x, y, z), ramp)
+            rigid *= min(share + reach / ramp, 1.0)
         steps = min(steps_per_contact, _AT_REST) if calm else steps_per_contact
         rigid *= steps * steps
         u, v, w = abs(x), abs(y), abs(z)
@@ -87,11 +88,12 @@ def _longest(m, touch, number, steps_per_contact, reach):
 
 
 @kernel
-def _rate(m, touch, c, n):
+def _rate(m, touch, c, n, apart):
     """Square of the largest angular frequency, 1/s2, of pair `c` if all its elements touch."""
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    total, trace, largest = show(m, touch, c, n), 0.0, 0.0
+    total, trace, largest = show(m, touch, c, n, apart), 0.0, 0.0
+    touch.tanks[c, SHARE] = 1.0
     if total == 0.0:
         return 0.0
     for slot in range(first, last + 1):
@@ -99,7 +101,7 @@ def _rate(m, touch, c, n):
             each = compliance(m, a, b, three(slots, slot, POINT), by, n)
             trace, largest = trace + slots[slot, AREA] * each, max(largest, each)
     bounce = total * compliance(m, a, b, centre_of(slots, first, last), by, n)
-    rigid, held = hardness(m, touch, c, total, slots[last, DEPTH])
+    rigid, held, _ = hardness(m, touch, c, total)
     # three ways to move on a face that is as hard everywhere; else all of it may bear on one corner
     rocking = trace / 3.0 if touch.law == FOUNDATION else total * largest
     return rigid * (1.0 / held - 1.0) * max(bounce, rocking)
@@ -119,7 +121,7 @@ def _calm(m, touch, c, n, area):
             fastest = max(fastest, abs(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
             volume += slots[slot, AREA] * slots[slot, DEPTH]
     centre = centre_of(slots, first, last)
-    rigid, held = hardness_now(m, touch, c, area)
+    rigid, held, _ = hardness(m, touch, c, area)
     square = rigid * (1.0 / held - 1.0) * area * compliance(m, a, b, centre, by, n)
     unbalanced = _acceleration(m, a, centre, (0.0, 0.0, 0.0), n)
     if b >= 0:
@@ -132,28 +134,27 @@ def _acceleration(m, b, p, by, n):
     """Acceleration along `n` of the point `p` of body `b` under its present loads, m/s2."""
     centre = three(m, b, POSITION)
     x, y, z = p[0] - centre[0] - by[0], p[1] - centre[1] - by[1], p[2] - centre[2] - by[2]
-    f, g, t, u = three(m, b, GIVEN), three(m, b, LOAD), three(m, b, GIVEN + 3), three(m, b, LOAD + 3)
-    p, q, r = scaled(turn_at(m, b), three(m, b, INVERSE), t[0] + u[0], t[1] + u[1], t[2] + u[2])
-    ax, ay, az = (f[0] + g[0]) * m[b, LIGHT], (f[1] + g[1]) * m[b, LIGHT], (f[2] + g[2]) * m[b, LIGHT]
+    (ax, ay, az), (p, q, r) = answer(m, b, loads_on(m, b))
     return n[0] * (ax + q * z - r * y) + n[1] * (ay + r * x - p * z) + n[2] * (az + p * y - q * x)
 
 
 @kernel
 def elastic(m, touch, number):
-    """Energy, J, that pairs can give back at the present pose: what their springs hold, at most their tanks."""
+    """Energy, J, that pairs can give back at the present pose, what their springs hold, at most their tanks; and what
+    springs to the world hold."""
     pairs, slots, tanks = touch.pairs, touch.slots, touch.tanks
-    energy = 0.0
+    energy = held_by_springs(m, touch.springs)
     for c in range(number):
         apart, x, y, z = normal_of(m, touch, c)
-        area = measure(m, touch, c, (x, y, z)) if apart < 0.0 else 0.0
+        area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
         if area == 0.0:
             continue
-        (rigid, held), potential = hardness_now(m, touch, c, area), 0.0
+        (rigid, held, shear), potential = hardness(m, touch, c, area), 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
                 pressed = held * depth * depth
-                sheared = 0.5 * TANGENTIAL * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
+                sheared = 0.5 * shear * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
                 potential += rigid * slots[slot, AREA] * (pressed + sheared)
         energy += min(potential, tanks[c, STORED])
     return energy

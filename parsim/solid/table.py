@@ -15,7 +15,11 @@ ROLE, MATERIAL = 62, 63
 MEAN = 64  # of velocity and spin before and after a kick
 RADIUS = 70  # of the ball around it, in a plane of the disc
 SHAPE = 71  # number of its shape
-WIDTH = 72
+FREE = 72  # 1 where it may move along x, y, z and turn about them
+ROD = 78  # pivot and length of the rod that it hangs by, 0 if by none
+PULL, TIED = 82, 88  # force and torque of its springs to the world; their impulse
+RUSH = 94  # acceleration of its centre at the kick before
+WIDTH = 97
 
 HELD, DRIVEN, ALONE, INVOLVED = 0, 1, 2, 3  # roles: at rest; moves as given; free, touches nothing now; may touch
 
@@ -45,6 +49,35 @@ def turn_at(m, b):
 def shape_of(m, b):
     """Number of the shape of body `b`."""
     return int(m[b, SHAPE])
+
+
+@kernel
+def hangs(m, b):
+    """Whether body `b` hangs by a rod."""
+    return m[b, ROD + 3] > 0.0
+
+
+@kernel
+def along_rod(m, b):
+    """Unit vector from the pivot of body `b` to its centre."""
+    scale = 1.0 / m[b, ROD + 3]
+    return (
+        scale * (m[b, POSITION] - m[b, ROD]),
+        scale * (m[b, POSITION + 1] - m[b, ROD + 1]),
+        scale * (m[b, POSITION + 2] - m[b, ROD + 2]),
+    )
+
+
+@kernel
+def turns_freely(m, b):
+    """Whether body `b` may turn about all axes."""
+    return m[b, FREE + 3] + m[b, FREE + 4] + m[b, FREE + 5] == 3.0
+
+
+@kernel
+def is_tied(m, b):
+    """Whether a joint keeps body `b` from moving as its loads would have it."""
+    return hangs(m, b) or not turns_freely(m, b) or m[b, FREE] + m[b, FREE + 1] + m[b, FREE + 2] < 3.0
 
 
 @kernel

@@ -8,10 +8,11 @@ its forces become smaller. Kinetic energy and tanks together thus never grow, bu
 the geometry and the sub-step. Such accounts are known from haptic interfaces (Hannaford & Ryu 2002,
 doi 10.1109/70.988969).
 
-Columns of `tanks` (n, 20), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
+Columns of `tanks` (n, 23), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
 only dissipate over several kicks; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE, SHEAR, that of its
 friction springs; WORK of the pair's forces in this kick, J; LOADS and LOSSES (6 each), force and torque about the
-centre of body a, N and N m, and their dissipating part; SHARE of its stiffness that a narrow contact has.
+centre of body a, N and N m, and their dissipating part; SHARE of its stiffness that a narrow contact has; BEND, RADIUS,
+m, and DEEP, m, of what touches: how it is curved (`laws.law.FLAT` and so on), and how deep it is.
 """
 
 import math
@@ -20,19 +21,20 @@ import numpy as np
 
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
-from parsim.solid.motion import foresee
+from parsim.solid.motion import answer, foresee
 from parsim.solid.search import FIRST, KEY, LAST, STRETCH, A, B
 from parsim.solid.separation import between
-from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, three, turn_at
+from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, is_tied, three, turn_at
 
-STORED, LOST, BEFORE, NOW, SHEAR_BEFORE, SHEAR, WORK, LOADS, LOSSES, SHARE = 0, 1, 2, 3, 4, 5, 6, 7, 13, 19
+STORED, LOST, BEFORE, NOW, SHEAR_BEFORE, SHEAR, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 13
+SHARE, BEND, RADIUS, DEEP = 19, 20, 21, 22
 _ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
 _ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
 def room_for_tanks(count):
     """Empty tanks of `count` pairs."""
-    return np.zeros((count, 20))
+    return np.zeros((count, 23))
 
 
 @kernel
@@ -138,9 +140,12 @@ def _work(m, touch, c, at, span):
 @kernel
 def _power(m, b, f):
     """(power of the loads `f` on body `b` at its MEAN, W; force times acceleration by them, W/s)."""
-    x, y, z = scaled(turn_at(m, b), three(m, b, INVERSE), f[3], f[4], f[5])
     v, w = three(m, b, MEAN), three(m, b, MEAN + 3)
     power = f[0] * v[0] + f[1] * v[1] + f[2] * v[2] + (f[3] * w[0] + f[4] * w[1] + f[5] * w[2])
+    if is_tied(m, b):
+        (x, y, z), (p, q, r) = answer(m, b, f)
+        return power, f[0] * x + f[1] * y + f[2] * z + (f[3] * p + f[4] * q + f[5] * r)
+    x, y, z = scaled(turn_at(m, b), three(m, b, INVERSE), f[3], f[4], f[5])
     square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
     return power, m[b, LIGHT] * square + (f[3] * x + f[4] * y + f[5] * z)
 

@@ -85,7 +85,7 @@ def draught(run: Run, name: str, track: Mapping[str, np.ndarray]) -> float | Non
     ]
     w, a, b, c = (track[f"q{i}"][row] for i in range(4))
     up = 2 * (a * c - w * b), 2 * (b * c + w * a), 1 - 2 * (a * a + b * b)  # in the body's axes
-    lowest = track["z"][row] - _shape(body).reach(up)
+    lowest = track["z"][row] - _shape(body).reach([-v for v in up])
     return float(max(levels) - lowest) if levels else None
 
 

@@ -1,7 +1,9 @@
 """The contact law "hertz": elastic half-spaces.
 
-Round on round, or on a face: F = 4/3 E* sqrt(R) d^(3/2) (Hertz 1882; Mellado 2021, eq. 4.19). A face on a face: the
-flat punch of its area A, F = 2 E* sqrt(A / pi) d (Sneddon 1965).
+Round on round, or on a face: F = 4/3 E* sqrt(R) d^(3/2) (Hertz 1882; Mellado 2021, eq. 4.19). A cylinder's side of
+length L: F = pi/4 E* L d (Popov 2010, sec. 5.4; the exact depth goes with a logarithm of the force). A face on a face:
+the flat punch of its area A, F = 2 E* sqrt(A / pi) d (Sneddon 1965). Sideways 8 G* a s on a circle of radius a (Mindlin
+1949), 1/G* = sum of 2 (1 + nu)(2 - nu) / E: 4 G*/E* of what the normal force grows by with the depth.
 """
 
 import math
@@ -10,7 +12,7 @@ from typing import Literal
 from pydantic import Field
 
 from parsim.machine.compiled import compiled
-from parsim.solid.laws.law import LawTable, compliance
+from parsim.solid.laws.law import FLAT, LINE, LawTable, compliance
 
 
 class HertzLaw(LawTable):
@@ -30,10 +32,18 @@ class HertzLaw(LawTable):
         """E*, Pa."""
         return 1.0 / compliance(one, two)
 
+    def shear(self, one, two):
+        """4 G*/E*."""
+        return (
+            4.0 * compliance(one, two) / sum(2.0 * (1.0 + m.poisson) * (2.0 - m.poisson) / m.young for m in (one, two))
+        )
+
 
 @compiled
-def stiffness(own, area, radius, depth):
-    """See `kernels.stiffness`."""
-    if radius == 0.0:
-        return 2.0 * own * math.sqrt(area / math.pi) / area, 0.5
-    return 4.0 / 3.0 * own * math.sqrt(radius * depth) / area, 0.4
+def stiffness(own, area, bend, radius, depth):
+    """See `kernels.stiffness`; the length of a line follows from its area, `touch.spot_area`."""
+    if bend == FLAT:
+        return 2.0 * own * math.sqrt(area / math.pi) / area, 0.5, 1.0
+    if bend == LINE:
+        return math.pi / 4.0 * own / (4.0 / 3.0 * math.sqrt(2.0 * radius * depth)), 0.5, 1.0
+    return 4.0 / 3.0 * own * math.sqrt(radius * depth) / area, 0.4, 1.5

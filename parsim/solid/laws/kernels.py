@@ -8,14 +8,15 @@ _HERTZ, _SPRING = hertz.HertzLaw.NUMBER, spring.SpringLaw.NUMBER
 
 
 @kernel
-def stiffness(law, own, area, radius, depth):
-    """(force over touching area and depth, Pa/m; energy held over force times depth) of a pair.
+def stiffness(law, own, area, bend, radius, depth):
+    """(force over touching area and depth, Pa/m; energy held over force times depth; tangential stiffness over
+    `LawTable.shear` and the normal one, as secants) of a pair.
 
-    `own`: see `LawTable.of_pair`; area that touches, m2; radius of what is round there, m, 0 for faces and edges, and
-    how deep that is, m.
+    `own`: see `LawTable.of_pair`; area that touches, m2; how what touches is curved, `law.FLAT`, LINE or SPOT; radius
+    of what is round there, m, and how deep that is, m.
     """
     if law == _HERTZ:
-        return _hertz(own, area, radius, depth)
+        return _hertz(own, area, bend, radius, depth)
     if law == _SPRING:
-        return _spring(own, area, radius, depth)
-    return _foundation(own, area, radius, depth)
+        return _spring(own, area, bend, radius, depth)
+    return _foundation(own, area, bend, radius, depth)

@@ -5,22 +5,31 @@ from typing import ClassVar
 
 from parsim.case.types import ShortTable
 
+FLAT, LINE, SPOT = 0.0, 1.0, 2.0  # what touches: faces and edges, something round along a line, or at a point
+SHEAR = 2.0 / 7.0  # tangential over normal stiffness (Schaefer, Dippel & Wolf 1996)
+
 
 class LawTable(ShortTable):
-    """What a case may say of a law. NUMBER tells kernels what it is (`laws.kernels`).
+    """What a case may say of a law. NUMBER tells kernels what it is (`laws.kernels`); INSTANT:
+    contacts take no time.
 
     Restitution and friction are those of the materials, whatever the law.
     """
 
     NUMBER: ClassVar[int]
+    INSTANT: ClassVar[bool] = False
 
     def doubts(self, planar):
         """What is doubtful about it, messages; `planar`: in a 2D case."""
         return []
 
     def of_pair(self, one, two, thinnest):
-        """What its kernel `stiffness` needs of two materials; `thinnest`: least half edge of any body, m."""
+        """What its kernel `stiffness` needs of two materials; `thinnest`: half the least width of any body, m."""
         raise NotImplementedError
+
+    def shear(self, one, two):
+        """Tangential over normal stiffness of a face of one material on a face of another."""
+        return SHEAR
 
 
 def compliance(one, two):

@@ -23,6 +23,6 @@ class SpringLaw(LawTable):
 
 
 @compiled
-def stiffness(own, area, radius, depth):
+def stiffness(own, area, bend, radius, depth):
     """See `kernels.stiffness`."""
-    return own / area, 0.5
+    return own / area, 0.5, 1.0

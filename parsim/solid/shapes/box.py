@@ -9,7 +9,8 @@ from pydantic import Field
 
 from parsim.case.types import Size
 from parsim.machine.compiled import compiled
-from parsim.solid.shapes.shape import Samples, ShapeTable
+from parsim.solid.shapes.samples import Samples
+from parsim.solid.shapes.shape import ShapeTable
 
 _SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners
 _QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
@@ -55,9 +56,17 @@ class BoxShape(ShapeTable):
         square = [h * h for h in self.half]
         return [mass / 3.0 * (square[(a + 1) % 3] + square[(a + 2) % 3]) for a in range(3)]
 
-    def draught(self, density, of_water):
+    def away(self, points):
         """See `ShapeTable`."""
-        return self.size[2] * density / of_water
+        over = np.abs(points) - self.half
+        return np.linalg.norm(np.maximum(over, 0.0), axis=1) + np.minimum(over.max(axis=1), 0.0)
+
+    def afloat(self, share, up=(0.0, 0.0, 1.0)):
+        """See `ShapeTable`; exact where a face is level."""
+        for axis in range(3):
+            if abs(up[axis]) > 1.0 - 1e-12:
+                return self.half[axis] - self.size[axis] * share
+        return super().afloat(share, up)
 
     def surface(self):
         """See `ShapeTable`."""
@@ -129,11 +138,10 @@ def _shares(half, count):
 
 
 @compiled
-def distance(p, half, used):
+def distance(p, half, planar):
     """See `kernels.distance`."""
-    x = abs(p[0]) - half[0] if used[0] else -math.inf
-    y = abs(p[1]) - half[1] if used[1] else -math.inf
-    z = abs(p[2]) - half[2] if used[2] else -math.inf
+    x, z = abs(p[0]) - half[0], abs(p[2]) - half[2]
+    y = -math.inf if planar else abs(p[1]) - half[1]
     deepest = max(x, y, z)
     if deepest <= 0.0:
         if x == deepest:
@@ -166,3 +174,25 @@ def ahead(p, n, half, behind):
 def reach(d, half):
     """See `kernels.reach`."""
     return half[0] * abs(d[0]) + half[1] * abs(d[1]) + half[2] * abs(d[2])
+
+
+@compiled
+def core(d, half, margin, planar):
+    """See `kernels.core`."""
+    x, y, z = half[0] - margin, 0.0 if planar else half[1] - margin, half[2] - margin
+    return x if d[0] > 0.0 else -x, y if d[1] > 0.0 else -y, z if d[2] > 0.0 else -z
+
+
+@compiled
+def depth(p, d, half, ramp, lateral):
+    """See `kernels.depth`."""
+    deep, weight = math.inf, 1.0
+    for i in range(3):
+        if abs(d[i]) < lateral:
+            weight = min(weight, 1.0 + (half[i] - abs(p[i])) / ramp)
+        else:
+            ahead = p[i] if d[i] > 0.0 else -p[i]
+            if half[i] + ahead < 0.0:
+                return 0.0, 0.0
+            deep = min(deep, (half[i] - ahead) / abs(d[i]))
+    return deep, (weight if deep > 0.0 and weight > 0.0 else 0.0)

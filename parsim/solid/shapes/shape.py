@@ -1,40 +1,30 @@
 """What every shape of a body is, in its own frame, whose origin is the centre of mass and whose axes are principal."""
 
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
 from parsim.case.types import Table
-
-
-class Samples(NamedTuple):
-    """Points at which a body is sampled for the water.
-
-    offsets (n, 3), m; shares (n,), the volume of each over that of a lattice point. Of the patches of its surface, one
-    for each sample of the outer layer and side it belongs to: sample (p,); face (p,), 2 axis + 1 of the direction in
-    which it looks most, less 1 where that is downwards; rim (p,), whether water comes to the side there; place (p, 3),
-    m, on the surface; normal (p, 3), outwards; area (p,), m2.
-    """
-
-    offsets: np.ndarray
-    shares: np.ndarray
-    sample: np.ndarray
-    face: np.ndarray
-    rim: np.ndarray
-    place: np.ndarray
-    normal: np.ndarray
-    area: np.ndarray
+from parsim.solid.shapes.surface import volume_under
 
 
 class ShapeTable(Table):
     """What a case may say of a shape, and what follows from it. `planar`: of a 2D case, one metre across.
 
-    NUMBER tells kernels what it is (`shapes.kernels`); ROUND: touches at one point, else by its contact elements.
-    half (3,), m: half edges of the box around it; volume, m3.
+    NUMBER tells kernels what it is (`shapes.kernels`); ROUND: touches at one point, else by its contact elements. FLAT:
+    a body of a plane alone.
+    half (3,), m: half edges of the box around it, about its centre; volume, m3. turn: quaternion (4,) from its frame
+    to that in which the case gives its angles.
     """
 
     NUMBER: ClassVar[int]
     ROUND: ClassVar[bool] = False
+    FLAT: ClassVar[bool] = False
+
+    @property
+    def turn(self):
+        """See above."""
+        return 1.0, 0.0, 0.0, 0.0
 
     @property
     def half(self):
@@ -66,9 +56,39 @@ class ShapeTable(Table):
         """Principal moments (3,), kg m2."""
         raise NotImplementedError
 
+    def thinnest(self, planar):
+        """Half of its least width, m."""
+        return min(self.half[a] for a in ((0, 2) if planar else (0, 1, 2)))
+
+    def normals(self):
+        """Normals (n, 3) of its faces, or of their pairs."""
+        return np.eye(3)
+
+    def away(self, points):
+        """Signed distances (n,), m, of points (n, 3) in its frame from its surface, negative inside."""
+        raise NotImplementedError
+
+    def sides(self):
+        """Sides of the polygon that it is in a plane, (k, 8): see `forms.Forms`."""
+        return np.zeros((0, 8))
+
+    def under(self, up, level):
+        """Volume, m3, of what lies under `level`, m, along the unit vector `up` (3,) from its centre."""
+        points, quads = self.surface()
+        return volume_under(points @ np.array(up) - level, points, quads)
+
+    def afloat(self, share, up=(0.0, 0.0, 1.0)):
+        """Height of its centre above the water, m, with `share` of its volume under it; `up` (3,) in its frame."""
+        whole = self.under(up, self.reach(up))
+        low, high = -self.reach([-v for v in up]), self.reach(up)
+        for _ in range(60):
+            level = 0.5 * (low + high)
+            low, high = (level, high) if self.under(up, level) < share * whole else (low, level)
+        return -low
+
     def draught(self, density, of_water):
         """How deep it floats level, m, by its density and that of the water, kg/m3."""
-        raise NotImplementedError
+        return self.reach((0.0, 0.0, -1.0)) - self.afloat(density / of_water)
 
     def surface(self):
         """Its surface: points (k, 3), m, and quads (m, 4) of them, anticlockwise seen from outside."""
@@ -79,8 +99,8 @@ class ShapeTable(Table):
         raise NotImplementedError
 
     def number_of_samples(self, spacing, depth, planar):
-        """How many `samples` there are, without making them."""
-        raise NotImplementedError
+        """How many `samples` there are."""
+        return len(self.samples(spacing, depth, planar).shares)
 
     def samples(self, spacing, depth, planar):
         """`Samples` at about the `spacing`, m, down to a `depth`, m, below the surface."""

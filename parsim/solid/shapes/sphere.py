@@ -8,7 +8,8 @@ from pydantic import Field
 
 from parsim.case.types import Moderate
 from parsim.machine.compiled import compiled
-from parsim.solid.shapes.shape import Samples, ShapeTable
+from parsim.solid.shapes.samples import Samples, face_of
+from parsim.solid.shapes.shape import ShapeTable
 
 _TURN = math.pi * (3.0 - math.sqrt(5.0))  # rad, from each point of a spiral to the next: even, and never repeating
 _QUADS = 8  # along each edge of the cube that becomes the surface
@@ -54,13 +55,15 @@ class SphereShape(ShapeTable):
         """See `ShapeTable`."""
         return [0.1 * mass * self.diameter**2] * 3
 
-    def draught(self, density, of_water):
-        """See `ShapeTable`: the depth h = d s of the cap whose share of the volume, s^2 (3 - 2 s), floats it."""
-        low, high = 0.0, 1.0
-        for _ in range(60):
-            s = 0.5 * (low + high)
-            low, high = (s, high) if s * s * (3.0 - 2.0 * s) * of_water < density else (low, s)
-        return self.diameter * low
+    def away(self, points):
+        """See `ShapeTable`."""
+        return np.linalg.norm(points, axis=1) - 0.5 * self.diameter
+
+    def under(self, up, level):
+        """See `ShapeTable`: a cap."""
+        radius = 0.5 * self.diameter
+        deep = radius + min(max(level, -radius), radius)
+        return math.pi * deep * deep * (3.0 * radius - deep) / 3.0
 
     def surface(self):
         """See `ShapeTable`: a cube blown up."""
@@ -103,9 +106,7 @@ class SphereShape(ShapeTable):
             shares.append(np.full(count, volume / count))
         first = len(offsets[0])
         normal = spiral(first) if first > 1 else np.array([[0.0, 0.0, 1.0]])
-        axis = np.abs(normal).argmax(axis=1)
-        face = 2 * axis + (normal[np.arange(first), axis] > 0.0)
-        patches = np.arange(first), face, np.ones(first, bool), radius * normal, normal
+        patches = np.arange(first), face_of(normal), np.ones(first, bool), radius * normal, normal
         return Samples(
             np.concatenate(offsets),
             np.concatenate(shares),
@@ -124,7 +125,7 @@ def spiral(count):
 
 
 @compiled
-def distance(p, half, used):
+def distance(p, half):
     """See `kernels.distance`."""
     length = math.sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])
     if length == 0.0:

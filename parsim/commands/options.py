@@ -1,0 +1,27 @@
+"""Arguments and options that several commands have."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML), or the name of an example")]
+Folder = Annotated[Path, typer.Argument(metavar="OUT", help="output folder of a run")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="replace one value, e.g. spacing=0.002 or bodies.A1.density=900"),
+]
+Threads = Annotated[int | None, typer.Option(min=1, metavar="N", help="threads of each rank")]
+Ranks = Annotated[int | None, typer.Option("-n", min=1, metavar="N", help="start N ranks with mpirun")]
+Walltime = Annotated[
+    str | None,
+    typer.Option(metavar="H:M:S", help="time that the job has, from now on: stops with a checkpoint before it is over"),
+]
+TableFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--table", metavar="TABLE", help="CSV: the first line names keys of the case, each further line is a run"
+    ),
+]
+Row = Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")]
+Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]

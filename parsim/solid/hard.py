@@ -1,0 +1,160 @@
+"""Motion of hard bodies, whose contacts take no time, as in nonsmooth dynamics (Moreau 1988).
+
+A step of the water is cut where bodies meet. There each point that comes closer leaves with its restitution times its
+speed (Newton); what is slower than the speed that its weight gives it in the step lies, and has none. After each cut
+the bodies fly, or their contacts keep points from coming closer than they are. A point of a pair is one of the elements
+of the other laws where it is in the other body; bodies lie _SINK of their width deep in each other, so contacts last.
+"""
+
+import math
+
+from parsim.machine.jit import kernel
+from parsim.solid.forces import coefficients
+from parsim.solid.impulses import solve, velocity_of
+from parsim.solid.motion import alone, clear_loads, drift_involved, foresee, kick_involved
+from parsim.solid.points import points_of
+from parsim.solid.search import STRETCH, TOUCHING, A, B
+from parsim.solid.shapes.kernels import touches_at_one_point
+from parsim.solid.springs import pull_springs
+from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SPIN, VELOCITY, shape_of, three
+from parsim.solid.touch import normal_of
+
+_SINK = 1e-6  # of the least half width of a pair's bodies, that they sink into each other
+_MEETINGS = 50  # in one step of the water, at most, at which it is cut; what meets after them does so at its end
+_LEAST = 1e-6  # of a step of the water that lies between two cuts
+_LIES = 4.0  # times the speed that loads give a body in a step, below which what comes closer lies
+
+
+@kernel
+def advance_hard(m, touch, number, dt, law):
+    """Move all bodies over `dt`, s; (points that touch, cuts, energy dissipated, J, work of what is driven, residual).
+
+    law: sweeps and residual of `laws.impulse`. The residual is the largest that was left, over the largest speed.
+    """
+    alone(m, dt)
+    if number == 0 and len(touch.springs) == 0:
+        drift_involved(m, dt)
+        return 0, 1, 0.0, 0.0, 0.0
+    lost, work, cuts, rest, left, touching = 0.0, 0.0, 0, dt, 0.0, 0
+    lies = _LIES * _gains(m, dt)
+    while rest > 0.0:
+        span = rest
+        if cuts < _MEETINGS:
+            span = min(max(_time_to_meet(m, touch, number, rest, lies), _LEAST * dt), rest)
+        drift_involved(m, 0.5 * span)
+        clear_loads(m)
+        pull_springs(m, touch.springs)
+        foresee(m, span)
+        heat, by_driven = kick_involved(m, span)
+        lost, work = lost + heat, work + by_driven
+        points = points_of(m, touch, number)
+        touching = len(points.slot)
+        if touching > 0:
+            gone, done, off = solve(m, touch, points, law, _aim(m, touch, points, lies, span))
+            lost, work, left = lost + gone, work + done, max(left, off)
+        _note_forces(touch, points, span)
+        drift_involved(m, 0.5 * span)
+        rest, cuts = (rest - span if span < rest else 0.0), cuts + 1
+    return touching, cuts, lost, work, left
+
+
+@kernel
+def _gains(m, dt):
+    """Largest speed, m/s, that the given loads give any body in the step."""
+    most = 0.0
+    for b in range(len(m)):
+        if m[b, ROLE] == INVOLVED:
+            x, y, z = three(m, b, GIVEN)
+            most = max(most, dt * m[b, LIGHT] * math.sqrt(x * x + y * y + z * z))
+    return most
+
+
+@kernel
+def _sink(touch, a, b):
+    """How deep bodies a and b, or body a and a wall, lie in each other, m."""
+    margin = touch.forms.margin
+    return _SINK * (min(margin[a], margin[b]) if b >= 0 else margin[a])
+
+
+@kernel
+def _aim(m, touch, points, lies, span):
+    """Set the speeds that points are to have along their normals; whether any comes closer faster than `lies`, m/s.
+
+    Those leave. The others may sink as deep as they lie in the coming `span`, s, and begin with the forces of before.
+    """
+    fast = False
+    for k in range(len(points.slot)):
+        c, slot, n = points.pair[k], points.slot[k], three(points.normal, k, 0)
+        a, b = touch.pairs[c, A], touch.pairs[c, B]
+        v = velocity_of(m, touch, points, k)
+        closer = -(v[0] * n[0] + v[1] * n[1] + v[2] * n[2])
+        if closer > lies:
+            points.wanted[k], fast = coefficients(m, touch, a, b)[1] * closer, True
+            continue
+        points.wanted[k] = min(points.depth[k] - _sink(touch, a, b), 0.0) / span
+        if touch.marks[slot, TOUCHING]:
+            for axis in range(3):
+                points.impulse[k, axis] = span * touch.slots[slot, STRETCH + axis]
+    return fast
+
+
+@kernel
+def _note_forces(touch, points, span):
+    """Note the forces of all points, N, in place of the stretch that springs would have."""
+    marks, slots = touch.marks, touch.slots
+    for slot in range(len(marks)):
+        marks[slot, TOUCHING] = 0
+    for k in range(len(points.slot)):
+        marks[points.slot[k], TOUCHING] = 1
+        for a in range(3):
+            slots[points.slot[k], STRETCH + a] = points.impulse[k, a] / span
+
+
+@kernel
+def _time_to_meet(m, touch, number, rest, lies):
+    """A time, s, at most `rest`, in which no pair that is apart can touch, 0 where one hits, faster than `lies`, m/s.
+
+    Along its normal a pair closes no faster than its centres and its spins do.
+    """
+    pairs, hit = touch.pairs, False
+    for c in range(number):
+        apart, x, y, z = normal_of(m, touch, c)
+        a, b = pairs[c, A], pairs[c, B]
+        speed, gain = _closing(m, a, (-x, -y, -z))
+        if b >= 0:
+            other, more = _closing(m, b, (x, y, z))
+            speed, gain = speed + other, gain + more
+        if apart <= 0.0:
+            hit = hit or speed > lies
+            continue
+        # the gap closes by speed t + gain t^2 / 2
+        root = speed * speed + 2.0 * gain * apart
+        if root > 0.0 and speed + math.sqrt(root) > 0.0:
+            rest = min(rest, 2.0 * apart / (speed + math.sqrt(root)))
+    if hit and _fastest(m, touch, points_of(m, touch, number)) > lies:
+        return 0.0
+    return rest
+
+
+@kernel
+def _fastest(m, touch, points):
+    """Largest speed, m/s, at which any point comes closer; endless where they only just touch."""
+    most = 0.0 if len(points.slot) > 0 else math.inf
+    for k in range(len(points.slot)):
+        v, n = velocity_of(m, touch, points, k), three(points.normal, k, 0)
+        most = max(most, -(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
+    return most
+
+
+@kernel
+def _closing(m, b, n):
+    """(speed, acceleration) along `n` of the point of body `b` that is fastest along it, at most."""
+    v, w, f = three(m, b, VELOCITY), three(m, b, SPIN), three(m, b, GIVEN)
+    speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2]
+    spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    if touches_at_one_point(shape_of(m, b)):
+        spin = 0.0
+    t, inverse = three(m, b, GIVEN + 3), three(m, b, INVERSE)
+    turn = math.sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) * max(inverse[0], inverse[1], inverse[2])
+    gain = m[b, LIGHT] * (f[0] * n[0] + f[1] * n[1] + f[2] * n[2])
+    return speed + m[b, RADIUS] * spin, gain + m[b, RADIUS] * turn

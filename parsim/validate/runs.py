@@ -1,0 +1,96 @@
+"""Run cases, measure them, and tell which bars they meet."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import parsim
+from parsim.report.measures import Published, published
+from parsim.validate.bars import Bar, bars
+from parsim.validate.measures import MEASURES
+
+MISSED = 3
+
+
+def validate(names: Iterable[str], level: str, as_json: bool, out: Path | None, ranks: int) -> int:
+    """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed.
+
+    Runs whose output is in `out` already are measured as they are.
+    """
+    held = bars(list(names), level)
+    with tempfile.TemporaryDirectory() as scratch:
+        rows = list(_rows(held, Path(out or scratch), ranks, as_json))
+    if as_json:
+        print(json.dumps(rows, indent=1))
+    if any(row["value"] is None for row in rows):
+        return 1
+    missed = [row for row in rows if not row["passed"]]
+    if not as_json:
+        print(f"{len(rows) - len(missed)} of {len(rows)} bars met" + (f", {len(missed)} missed" if missed else ""))
+    return MISSED if missed else 0
+
+
+def _rows(held: dict[Path, list[Bar]], folder: Path, ranks: int, quiet: bool) -> Iterator[dict[str, Any]]:
+    for path, each in held.items():
+        out = folder / f"{path.parent.name}-{path.stem}"
+        if not quiet:
+            print(f"{each[0].case}", flush=True)
+        whole = (out / "run.json").is_file() or _run(path, out, ranks)
+        run = parsim.open(out) if whole else None
+        numbers = {number.quantity: number for number in published(run)} if run else {}
+        for bar in each:
+            row = judged(bar, MEASURES[bar.measure](run, **bar.arguments) if run else None, numbers.get(bar.quantity))
+            if not quiet:
+                print(told(row), flush=True)
+            yield row
+
+
+def _run(path: Path, out: Path, ranks: int) -> bool:
+    words = [sys.executable, "-m", "parsim", "run", str(path), "-o", str(out)]
+    ran = subprocess.run([*words, *(["-n", str(ranks)] if ranks > 1 else [])], capture_output=True, text=True)
+    if ran.returncode:
+        print(ran.stderr, file=sys.stderr)
+    return ran.returncode == 0
+
+
+def judged(bar: Bar, value: float | None, number: Published | None) -> dict[str, Any]:
+    """A row: value, reference, error and whether it is within the bar; document: the error of the published model.
+
+    The reference is a number or a range, in which the error is zero; without one the value itself is the error.
+    """
+    low, high = (number.low or 0.0, number.high or 0.0) if number else (0.0, 0.0)
+
+    def off(value: float) -> float:
+        nearest = min(max(value, low), high)
+        error = value - nearest
+        return error if bar.absolute or nearest == 0.0 else error / abs(nearest)
+
+    error = None if value is None else off(value)
+    return {
+        "case": bar.case,
+        "quantity": bar.quantity,
+        "unit": number.unit if number else "-",
+        "value": value,
+        "reference": low if low == high else [low, high],
+        "error": error,
+        "document": off(number.model) if number and number.model is not None else None,
+        "bar": bar.within,
+        "passed": error is not None and abs(error) <= bar.within,
+    }
+
+
+def told(row: dict[str, Any]) -> str:
+    """A row as a line of text."""
+    if row["value"] is None:
+        return f"  {row['quantity']}: the run failed"
+    reference = row["reference"]
+    shown = " to ".join(f"{v:.6g}" for v in (reference if isinstance(reference, list) else [reference]))
+    words = f"  {'met   ' if row['passed'] else 'MISSED'} {row['quantity']}: {row['value']:.6g} {row['unit']}"
+    words += f", reference {shown}, error {row['error']:.2g}, bar {row['bar']:.2g}"
+    return words + (f", the document's own error {row['document']:.2g}" if row["document"] is not None else "")

@@ -1,0 +1,154 @@
+"""Any two bodies, or a body and what is driven, however they meet: energy, momentum, and who stays on which side."""
+
+import math
+
+import numpy as np
+import pytest
+from contact_cases import case, momenta
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from parsim.case.places import Place, overlap
+from parsim.geometry.rotation import from_angles, matrices
+from parsim.solid.bodies import Bodies
+from parsim.solid.contacts import Contacts
+from parsim.solid.laws import DEFAULT
+from parsim.solid.laws.hertz import HertzLaw
+from parsim.solid.laws.impulse import ImpulseLaw
+from parsim.solid.laws.spring import SpringLaw
+from parsim.solid.shapes import (
+    BoxShape,
+    CylinderShape,
+    DilatedDiscShape,
+    DiscShape,
+    PolygonShape,
+    PrismShape,
+    SphereShape,
+)
+
+SOFT = DEFAULT, HertzLaw(kind="hertz"), SpringLaw(kind="spring", stiffness=1e5)
+HARD = ImpulseLaw(kind="impulse")
+WEIGHTLESS = (0.0, 0.0, 0.0)
+
+
+def polygon(dice, size):
+    """Corners of a convex polygon about that wide."""
+    while True:
+        angles = np.sort(dice.uniform(0.0, 2.0 * math.pi, dice.integers(3, 9)))
+        if np.diff([*angles, angles[0] + 2.0 * math.pi]).max() < 2.8 and np.diff(angles).min() > 0.1:
+            break
+    stretch = dice.uniform(0.4, 1.0)
+    return tuple((float(0.5 * size * math.cos(a)), float(0.5 * stretch * size * math.sin(a))) for a in angles)
+
+
+def shape(dice, planar, size):
+    """Any shape about as wide as `size`, m."""
+    flat = size * dice.uniform(0.15, 1.0)
+    if planar:
+        return [
+            lambda: DiscShape(kind="disc", diameter=size),
+            lambda: PolygonShape(kind="polygon", points=polygon(dice, size)),
+            lambda: BoxShape(size=(size, 1.0, flat)),
+        ][dice.integers(3)]()
+    return [
+        lambda: SphereShape(kind="sphere", diameter=size),
+        lambda: BoxShape(size=(size, size * dice.uniform(0.3, 1.0), flat)),
+        lambda: CylinderShape(kind="cylinder", diameter=size, height=flat),
+        lambda: PrismShape(kind="prism", points=polygon(dice, size), height=flat),
+        lambda: DilatedDiscShape(kind="dilated_disc", diameter=size, thickness=0.8 * flat),
+    ][dice.integers(5)]()
+
+
+def pose(dice, planar):
+    """Any orientation, or one that is all but upright, so that faces and edges meet."""
+    if dice.random() < 0.4:
+        angles = dice.choice([0.0, 90.0], 3) + dice.normal(0.0, 10.0 ** dice.uniform(-6.0, 0.0), 3)
+    else:
+        angles = dice.uniform(-180.0, 180.0, 3)
+    return from_angles(angles * (0.0, 1.0, 0.0) if planar else angles)
+
+
+def pair(dice, law):
+    """Two bodies, of sizes up to 1:100, that fly at each other and spin: (bodies, contacts)."""
+    planar, first = dice.random() < 0.3, 10.0 ** dice.uniform(-2.0, -1.0)
+    second = first * 10.0 ** dice.uniform(-2.0, 2.0)
+    shapes = [shape(dice, planar, size) for size in (first, second)]
+    way = dice.normal(size=3) * ((1.0, 0.0, 1.0) if planar else 1.0)
+    way /= np.linalg.norm(way)
+    apart = sum(s.radius(planar) for s in shapes)
+    off = dice.normal(size=3) * 0.3 * min(first, second) * ((1.0, 0.0, 1.0) if planar else 1.0)
+    off -= (off @ way) * way
+    speed = 10.0 ** dice.uniform(-1.0, 0.5)
+    spin = dice.normal(size=(2, 3)) * speed / np.array([[first], [second]]) * ((0.0, 1.0, 0.0) if planar else 1.0)
+    masses = np.array([s.volume for s in shapes]) * 10.0 ** dice.uniform(2.0, 4.0, 2)
+    if law.kind == "spring":  # a third of the width deep at most
+        thin = min(s.thinnest(planar) for s in shapes)
+        law = SpringLaw(kind="spring", stiffness=masses.prod() / masses.sum() * (10.0 * speed / thin) ** 2)
+    bodies = Bodies(
+        shapes,
+        masses,
+        [np.full(3, 0.5), 0.5 + 1.02 * apart * way + off],
+        quaternion=[pose(dice, planar) for _ in shapes],
+        velocity=[0.5 * speed * way, -0.5 * speed * way],
+        spin=spin * dice.choice([0.0, 1.0]),
+        planar=planar,
+    )
+    given_case = case(
+        law=law,
+        gravity=WEIGHTLESS,
+        walls=(),
+        young=1e8,
+        restitution=dice.uniform(0.05, 1.0),
+        friction=dice.choice([0.0, 0.3, 1.0]),
+    )
+    given_case.dimensions = 2 if planar else 3
+    return bodies, Contacts(bodies, given_case), 1.2 * apart / speed
+
+
+def held(bodies, contacts):
+    return bodies.kinetic_energy() + contacts.elastic_energy()
+
+
+def meets_and_keeps(seed, law, steps=60):
+    """Draw a pair and check it; how deep the two were in each other at most, over the smaller one's width."""
+    bodies, contacts, until = pair(np.random.default_rng(seed), law)
+    start, before, deepest = held(bodies, contacts), momenta(bodies), 0.0
+    size, taken = np.abs(before[0]).max() + bodies.mass.max() * np.abs(bodies.velocity).max(), 0
+    for step in range(steps):
+        if taken > 20000:  # they stay together
+            break
+        dt = min(until / steps, contacts.limit())
+        contacts.step(bodies, np.zeros((2, 6)), step * dt, dt)
+        taken += contacts.steps
+        assert held(bodies, contacts) <= start * (1.0 + 1e-6), (seed, step)
+        if contacts.count:
+            turn = matrices(bodies.quaternion)
+            places = [Place(*each) for each in zip(bodies.position, turn, bodies.shapes, strict=True)]
+            deepest = max(deepest, overlap(*places))
+    for now, then, arm in zip(momenta(bodies), before, (1.0, 1.0), strict=True):
+        assert now == pytest.approx(then, abs=1e-9 * size * arm), seed
+    return deepest / (2.0 * min(s.thinnest(bodies.planar) for s in bodies.shapes))
+
+
+any_draw = given(st.integers(0, 2**32 - 1))
+few = settings(max_examples=125, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+many = settings(few, max_examples=2500)
+
+
+def check(law):
+    @any_draw
+    def run(seed):
+        assert meets_and_keeps(seed, law) < 0.5, seed
+
+    return run
+
+
+@pytest.mark.parametrize("law", [*SOFT, HARD], ids=lambda law: law.kind)
+def test_any_two_bodies_keep_energy_and_momentum_and_do_not_pass(law):
+    few(check(law))()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", [*SOFT, HARD], ids=lambda law: law.kind)
+def test_ten_thousand_pairs_keep_energy_and_momentum_and_do_not_pass(law):
+    many(check(law))()
