@@ -39,10 +39,20 @@ class Plate:
         return 0.4
 
 
-def case(restitution=0.8545, friction=MU, gravity=GRAVITY, walls=("z_min",), young=1e7, steps=20, law=DEFAULT, **other):
+def case(
+    restitution=0.8545,
+    friction=MU,
+    gravity=GRAVITY,
+    walls=("z_min",),
+    young=1e7,
+    steps=20,
+    law=DEFAULT,
+    rolling=0.0,
+    **other,
+):
     """The parts of a case that contacts read; soft materials make long sub-steps."""
     faces = dict.fromkeys([f"{a}_{s}" for a in "xyz" for s in ("min", "max")], "open") | dict.fromkeys(walls, "wall")
-    material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution)
+    material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution, rolling=rolling)
     numbers = SimpleNamespace(steps_per_contact=steps, law=law, pairs=())
     box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=Faces(**faces | other))
     return SimpleNamespace(

@@ -143,9 +143,27 @@ def test_a_narrow_contact_is_soft_whatever_the_law(law):
     assert np.abs(bodies.velocity[2]).max() < 1e-3
 
 
+@pytest.mark.parametrize("law", LAWS_HERE, ids=lambda law: law.kind)
+@pytest.mark.parametrize("slope", [2.0, 8.0])
+def test_rolling_friction_holds_a_ball_to_its_angle_and_slows_it_above(law, slope):
+    """Held while tan a < mu_r; above, m a = m g (sin a - mu_r cos a) / 1.4 for a ball that does not slip."""
+    a, rolling = math.radians(slope), 0.1
+    down = (9.81 * math.sin(a), 0.0, -9.81 * math.cos(a))
+    shape = SphereShape(kind="sphere", diameter=2.0 * RADIUS)
+    rolls = Bodies([shape], [0.06], [(0.3, 0.5, RADIUS)])
+    contacts = Contacts(rolls, case(gravity=down, law=law, friction=0.6, restitution=0.3, rolling=rolling))
+    before = budget(rolls, contacts, down)
+    go(rolls, contacts, 5e-4, 400)
+    wound = rolls.velocity[0, 0]
+    go(rolls, contacts, 5e-4, 400, time=0.2)
+    exact = max(9.81 * (math.sin(a) - rolling * math.cos(a)) / 1.4, 0.0)
+    assert rolls.velocity[0, 0] - wound == pytest.approx(0.2 * exact, rel=0.02, abs=1e-3), "held it rocks for a while"
+    assert budget(rolls, contacts, down) == pytest.approx(before, abs=2e-3 * abs(before) + 1e-6)
+
+
 def test_a_pair_of_materials_may_have_its_own_restitution_and_friction():
     given = case(restitution=0.9, friction=0.5)
-    given.materials["rail"] = SimpleNamespace(young=YOUNG, poisson=0.4, friction=0.1, restitution=0.3)
+    given.materials["rail"] = SimpleNamespace(young=YOUNG, poisson=0.4, friction=0.1, restitution=0.3, rolling=0.0)
     given.contacts.pairs = (Pair(between=("rail", "ice"), restitution=0.2),)
     law = Contacts(Bodies([], [], []), given)._pair_law
     assert law[1, 0, 1] == law[1, 1, 0] == damping_of(0.2) and law[1, 0, 0] == damping_of(0.9)

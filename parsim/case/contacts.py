@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from parsim.case.types import Name, Positive, Real, Table, Whole
+from parsim.case.types import Name, Positive, Real, Share, Table, Whole
 from parsim.solid.laws import DEFAULT, Law
 
 
@@ -15,6 +15,7 @@ class Material(Table):
     poisson: Real = Field(ge=0, lt=0.5, description="Poisson's ratio")
     friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
     restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
+    rolling: Share = Field(0.0, description="coefficient of rolling friction, of what is round")
 
 
 class Pair(Table):
@@ -27,6 +28,7 @@ class Pair(Table):
     restitution: Annotated[Real, Field(gt=0, le=1)] | None = Field(
         None, description="coefficient of restitution; left out: the mean of theirs"
     )
+    rolling: Share | None = Field(None, description="coefficient of rolling friction; left out: the mean of theirs")
 
 
 class Contacts(Table):

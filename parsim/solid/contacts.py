@@ -63,7 +63,7 @@ class Contacts:
         self.count, self.steps, self._state = 0, 0, np.zeros(2)
         self._reacts = np.flatnonzero(bodies.joints.reacts)
         self._by_joints = np.array([b for b, *_ in bodies.joints.driven], int)
-        self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 3))
+        self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 6))
         self._pair, self._stored = np.zeros(0, np.int64), np.zeros((0, 2))
 
     def limit(self):
@@ -125,7 +125,7 @@ class Contacts:
         """Go on from what `kept` returned."""
         self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
         self._stored = np.array(kept["stored"], float).reshape(-1, 2)
-        self._stretch = np.array(kept["stretch"], float).reshape(-1, 3)
+        self._stretch = np.array(kept["stretch"], float).reshape(-1, 6)
         self.dissipated, self.driven_work, self._time = (float(v) for v in kept["totals"][:3])
         self._state = np.array(kept["totals"][3:], float)
         self.count = len(self._key)
@@ -236,8 +236,8 @@ def _pose(bodies):
 
 
 def _law(case, bodies):
-    """Table (4, n, n) over pairs of materials: what the law needs of them; damping ratio, of hard bodies
-    restitution; friction; shear.
+    """Table (5, n, n) over pairs of materials: what the law needs of them; damping ratio, of hard bodies
+    restitution; friction; shear; rolling friction.
 
     Restitution and friction of a pair are those given for it, else the means of the two (Canelas et al. 2016, doi
     10.1016/j.cpc.2016.05.003).
@@ -245,7 +245,7 @@ def _law(case, bodies):
     each, names = list(case.materials.values()), list(case.materials)
     thinnest = _thinnest(bodies) if len(bodies) else 1.0
     given = {frozenset(pair.between): pair for pair in case.contacts.pairs}
-    law = np.zeros((4, len(each), len(each)))
+    law = np.zeros((5, len(each), len(each)))
     for i, one in enumerate(each):
         for j, two in enumerate(each):
             law[0, i, j] = case.contacts.law.of_pair(one, two, thinnest)
@@ -254,6 +254,7 @@ def _law(case, bodies):
             law[1, i, j] = restitution if case.contacts.law.INSTANT else damping_of(restitution)
             law[2, i, j] = _of_pair("friction", one, two, pair)
             law[3, i, j] = case.contacts.law.shear(one, two)
+            law[4, i, j] = _of_pair("rolling", one, two, pair)
     return law
 
 

@@ -40,6 +40,23 @@ def friction_force(stretch, n, v, lapse, limit, stiffness, dashpot):
 
 
 @kernel
+def rolling_torque(roll, n, spin, lapse, limit, radius, stiffness, dashpot):
+    """(torque against rolling, N m, new spring, two tuples of 3, and the elastic energy stored).
+
+    A friction spring of what rolls off, radius times the turn, with the stiffness 2.25 mu_r^2 of the normal one, capped
+    at mu_r times the normal force (Ai et al. 2011, doi 10.1016/j.powtec.2010.09.030, model C).
+    """
+    v = (
+        radius * (spin[1] * n[2] - spin[2] * n[1]),
+        radius * (spin[2] * n[0] - spin[0] * n[2]),
+        radius * (spin[0] * n[1] - spin[1] * n[0]),
+    )
+    (x, y, z), roll, energy = friction_force(roll, n, v, lapse, limit, stiffness, dashpot)
+    torque = radius * (n[1] * z - n[2] * y), radius * (n[2] * x - n[0] * z), radius * (n[0] * y - n[1] * x)
+    return torque, roll, energy
+
+
+@kernel
 def _into_plane(s, n):
     """The vector `s` turned into the plane across the unit vector `n`, of unchanged length."""
     along = s[0] * n[0] + s[1] * n[1] + s[2] * n[2]

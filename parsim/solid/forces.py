@@ -4,10 +4,10 @@ import math
 
 from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
-from parsim.solid.element import friction_force, normal_force
+from parsim.solid.element import friction_force, normal_force, rolling_torque
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.motion import answer, clear_loads
-from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, STRETCH, TOUCHING, WALL_MATERIAL, A, B
+from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import between
 from parsim.solid.speeds import speed_of
 from parsim.solid.springs import pull_springs
@@ -22,9 +22,9 @@ _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 def press(m, touch, number, lapse, span):
     """Loads of the first `number` pairs and of springs into the table and the tanks; how many elements touch.
 
-    `pair_law` (4, n, n): what the law needs, damping ratio, friction and shear over materials. `lapse`: time since the
-    last call, s, by which friction springs have stretched; `span`: of the kick that comes, s. 50 ns an element that
-    touches, 1 us a pair that overlaps.
+    `pair_law` (5, n, n): what the law needs, damping ratio, friction, shear, rolling friction over materials. `lapse`:
+    time since the last call, s, by which friction springs have stretched; `span`: of the kick that comes, s. 50 ns an
+    element that touches, 1 us a pair that overlaps.
     """
     pairs, marks = touch.pairs, touch.marks
     clear_loads(m)
@@ -44,10 +44,10 @@ def press(m, touch, number, lapse, span):
 
 @kernel
 def coefficients(m, touch, a, b):
-    """(what the law needs, damping ratio, friction, shear) of bodies a and b, or of body a and wall -1 - b."""
+    """What the law needs, damping ratio, friction, shear, rolling friction of bodies a and b, or a and wall -1 - b."""
     law, walls = touch.pair_law, touch.walls
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
-    return law[0, one, two], law[1, one, two], law[2, one, two], law[3, one, two]
+    return law[0, one, two], law[1, one, two], law[2, one, two], law[3, one, two], law[4, one, two]
 
 
 @kernel
@@ -57,7 +57,7 @@ def hardness(m, touch, c, area):
 
     `area`, m2: what touches, by `measure` or `show`; the stiffness is that of a contact that is not narrow.
     """
-    tanks, (own, _, _, shear) = touch.tanks, coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])
+    tanks, (own, _, _, shear, _) = touch.tanks, coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])
     area /= tanks[c, SHARE]
     rigid, held, more = stiffness(touch.law, own, area, tanks[c, BEND], tanks[c, RADIUS], tanks[c, DEEP])
     return rigid, held, more * shear
@@ -97,14 +97,15 @@ def _push(m, touch, c, n, total, times):
     """
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    (_, damping, mu, _), (rigid, held, shear) = coefficients(m, touch, a, b), hardness(m, touch, c, total)
+    _, damping, mu, _, rolling = coefficients(m, touch, a, b)
+    rigid, held, shear = hardness(m, touch, c, total)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * rigid / total * (0.5 / held))
     motion, light = relative_motion(m, a, b, by), m[a, LIGHT] + (m[b, LIGHT] if b >= 0 else 0.0)
     springs = rigid * _pressed_in(slots, first, last) - _along(touch.tanks, c, n)
     dashpot /= 1.0 + 0.5 * times[1] * dashpot * total / effective
     ahead = times[0], 0.5 * times[1] * (_parting(m, a, b, n) + light * springs)
-    law = rigid, dashpot, mu, held, shear
+    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS])
     touching, sheared, pressed, force, loss = _sum(touch, first, last, n, motion, ahead, law)
     load_pair(m, touch, c, sheared + pressed, sheared, force, loss)
     return touching
@@ -145,7 +146,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
     speed that the pair will have gained by the middle of the kick, m/s.
     """
     marks, slots, (lapse, sooner) = touch.marks, touch.slots, ahead
-    rigid, dashpot, mu, held, shear = law
+    rigid, dashpot, mu, held, shear, (rolling, radius) = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(shear) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -157,12 +158,20 @@ def _sum(touch, first, last, n, motion, ahead, law):
         x, y, z = slots[slot, POINT] - ox, slots[slot, POINT + 1] - oy, slots[slot, POINT + 2] - oz
         v = velocity_at(motion, x, y, z)
         normal, elastic = normal_force(rigid, dashpot, area, depth, v[0] * n[0] + v[1] * n[1] + v[2] * n[2] + sooner)
-        s, age = (0.0, 0.0, 0.0), 0.0
+        s, roll, age = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
         if marks[slot, TOUCHING]:
-            s, age = three(slots, slot, STRETCH), lapse
+            s, roll, age = three(slots, slot, STRETCH), three(slots, slot, ROLL), lapse
         slip, s, energy = friction_force(s, n, v, age, mu * normal, shear * rigid * area, tangential * area)
         slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
         marks[slot, TOUCHING] = 1
+        if rolling > 0.0 and radius > 0.0:
+            share = 2.25 * rolling * rolling
+            stiff, drag = share * rigid * area, math.sqrt(share) * dashpot * area
+            t, roll, more = rolling_torque(roll, n, motion[2], age, rolling * normal, radius, stiff, drag)
+            slots[slot, ROLL], slots[slot, ROLL + 1], slots[slot, ROLL + 2] = roll
+            energy += more
+            tx, ty, tz = tx + t[0], ty + t[1], tz + t[2]
+            ux, uy, uz = ux + t[0], uy + t[1], uz + t[2]
         count, stored, pressed = count + 1, stored + energy, pressed + held * elastic * depth
         p, q, r = normal * n[0] + slip[0], normal * n[1] + slip[1], normal * n[2] + slip[2]
         fx, fy, fz = fx + p, fy + q, fz + r

@@ -7,8 +7,8 @@ to its periodic image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
 INDEX (its row in the table of elements; -1: none, -2 - k: point k along the curved side), TOUCHING; `slots`: DEPTH, m,
-AREA, m2, POINT, m, STRETCH, m, of its friction spring. Walls, rows of eleven: normal inwards, level (normal . x > level
-inside), the lowest and highest corner of where they are, and WALL_MATERIAL.
+AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolling friction. Walls, rows of eleven:
+normal inwards, level (normal . x > level inside), the lowest and highest corner of where they are, and WALL_MATERIAL.
 """
 
 import math
@@ -26,7 +26,7 @@ from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TU
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
-DEPTH, AREA, POINT, STRETCH = 0, 1, 2, 5
+DEPTH, AREA, POINT, STRETCH, ROLL = 0, 1, 2, 5, 8
 WALL_MATERIAL = 10
 _ROUNDING = 1e-9  # of the widest body
 _MARGIN = 1.5  # a body that is hit may become faster than any was before
@@ -67,7 +67,7 @@ def room_for_pairs(count):
 
 def room_for_slots(count):
     """Empty tables of marks and slots."""
-    return np.zeros((count, 4), np.int64), np.zeros((count, 8))
+    return np.zeros((count, 4), np.int64), np.zeros((count, 11))
 
 
 @kernel
@@ -199,7 +199,7 @@ def _mark(touch, slot, key, element, index):
     marks, slots = touch.marks, touch.slots
     if slot < len(marks):
         marks[slot, SLOT_KEY], marks[slot, ELEMENT], marks[slot, INDEX], marks[slot, TOUCHING] = key, element, index, 0
-        for k in range(8):
+        for k in range(11):
             slots[slot, k] = 0.0
     return slot + 1
 
@@ -242,5 +242,5 @@ def recall(marks, slots, count, key, element, stretch):
             old += 1
         if old < key.size and key[old] == pair and element[old] == number:
             marks[slot, TOUCHING] = 1
-            for k in range(3):
+            for k in range(6):
                 slots[slot, STRETCH + k] = stretch[old, k]

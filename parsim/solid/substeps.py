@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from parsim.machine.jit import kernel
-from parsim.solid.forces import compliance, free_time, hardness, press, relative_motion, velocity_at
+from parsim.solid.forces import coefficients, compliance, free_time, hardness, press, relative_motion, velocity_at
 from parsim.solid.laws.foundation import FOUNDATION
 from parsim.solid.motion import alone, answer, drift_involved, kick_involved, loads_on
-from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, STRETCH, A, B
+from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
 from parsim.solid.separation import ROUND_A, overlap_share, ramp_of
 from parsim.solid.springs import held_by_springs, rate_of_springs
 from parsim.solid.table import POSITION, three
@@ -154,7 +154,9 @@ def elastic(m, touch, number):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
                 pressed = held * depth * depth
+                r, rolling = three(slots, slot, ROLL), coefficients(m, touch, pairs[c, A], pairs[c, B])[4]
+                rolled = 1.125 * rolling * rolling * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
                 sheared = 0.5 * shear * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-                potential += rigid * slots[slot, AREA] * (pressed + sheared)
+                potential += rigid * slots[slot, AREA] * (pressed + sheared + rolled)
         energy += min(potential, tanks[c, STORED])
     return energy

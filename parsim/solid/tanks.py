@@ -22,7 +22,7 @@ import numpy as np
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
 from parsim.solid.motion import answer, foresee
-from parsim.solid.search import FIRST, KEY, LAST, STRETCH, A, B
+from parsim.solid.search import FIRST, KEY, LAST, ROLL, STRETCH, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, is_tied, three, turn_at
 
@@ -97,7 +97,7 @@ def _slacken(touch, c, share):
         tanks[c, k] *= share
     tanks[c, SHEAR] *= share * share
     for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
-        for k in range(STRETCH, STRETCH + 3):
+        for k in range(STRETCH, ROLL + 3):
             slots[slot, k] *= share
 
 
