@@ -10,6 +10,7 @@ from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps.fields import NORMAL
 from parsim.fluid.weights import WEIGHTS
 from parsim.particles.state import DETACHED, FLUID, INTERNAL, SURFACE, VICINITY, WALL, make_id
+from parsim.particles.tables import Lists
 
 DOWN = (0.0, 0.0, -1.0)
 
@@ -29,7 +30,7 @@ def shift(domain, near, scheme, pull=0.1, slope=0.0):
     """Shift the fluid, 0.004 m2 times the sums that the fields ax, ay, az hold, at most 0.01 m."""
     p = domain.particles
     at = near.fluid
-    surface.clamp(at, p.surface, scheme.number, 0.005, p.n)
+    surface.clamp(at, near.lists, p.surface, scheme.number, 0.005, p.n)
     surface.mark(at, near.lists, p.place, scheme.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
     recovery.recover(
         at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), scheme.weight, recovering(scheme, pull), p.n
@@ -64,6 +65,15 @@ def shallow(request):
     every.kind[low], every.id[low] = WALL, make_id(WALL, np.arange(low.sum()))
     domain, near = listed(every, [size[0], size[1], 1.0], 0.31, (True, True, False))
     return found(domain, near, Lattice(3, 0.1, 3.1, request.param))
+
+
+def test_a_drop_does_not_pull():
+    """Of up to four particles: one on a body, which turns it out all the time, has lifted it for ever."""
+    start = np.array([0, 3, 7, 7])
+    lists = Lists(start, start + [3, 4, 0, 9], start + [3, 4, 0, 9], np.zeros(16, np.int64))
+    n = np.full(4, 0.9)
+    surface.clamp(np.arange(4), lists, np.array([SURFACE, SURFACE, DETACHED, INTERNAL]), 1.0, 0.005, n)
+    assert n.tolist() == [1.0, 0.995, 1.0, 0.9]
 
 
 def test_the_top_and_bottom_of_a_free_slab_are_its_surface(slab):

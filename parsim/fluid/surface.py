@@ -9,6 +9,8 @@ from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import each, prange, rows
 from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY
 
+_DROP = 3  # other particles of water near one, at most, in a drop
+
 
 class Bounds(NamedTuple):
     """spacing, m; lowest, highest: the concentrations between which a particle may be at the surface."""
@@ -57,12 +59,17 @@ def classify(at, lists, place, c, bounds, surface, normal):
 
 
 @each
-def clamp(at, surface, n0, loosest, n):
-    """Hold n at the surface within `loosest` n0 of n0: a drop must not come back under more than the flow can have."""
+def clamp(at, lists, surface, n0, loosest, n):
+    """Hold n at the surface within `loosest` n0 of n0: a drop must not come back under more than the flow can have.
+
+    A drop of a few particles does not pull: on a body, which turns it out all the time, it would lift that for ever.
+    """
+    start, middle = lists.start, lists.middle
     for row in prange(at.size):
         i = at[row]
         if surface[i] >= SURFACE:
-            n[i] = min(max(n[i], n0 * (1.0 - loosest)), n0 * (1.0 + loosest))
+            lowest = 1.0 if middle[i] - start[i] <= _DROP else 1.0 - loosest
+            n[i] = min(max(n[i], n0 * lowest), n0 * (1.0 + loosest))
 
 
 @rows

@@ -204,7 +204,7 @@ class WCMPS:
         mach = min(speed / self.sound, _LARGEST_MACH)
         factor = 2.0 * lattice.spacing**2 * dt / self._passage(speed) * mach * self._gradient
         at, lists, place, n0 = near.fluid, near.lists, p.place, lattice.number
-        surface.clamp(at, p.surface, n0, self.loosest, p.n)
+        surface.clamp(at, lists, p.surface, n0, self.loosest, p.n)
         surface.mark(at, lists, place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
         pulled = recovery.Recovery(
             lattice.radius**2,
