@@ -94,6 +94,12 @@ def test_distance_is_that_to_the_nearest_point_of_the_surface(shape):
         assert (inside[0] > 0.0) == (high > 0.0), "within the distance there is no surface"
 
 
+def test_shapes_that_are_asked_for_something_still_compare():
+    one, two = (PrismShape(kind="prism", points=HEXAGON, height=h) for h in (0.15, 0.2))
+    assert one.corners is not None and one != two and one == PrismShape(kind="prism", points=HEXAGON, height=0.15)
+    assert len({one, two, one.model_copy()}) == 2
+
+
 @every_shape
 def test_rays_meet_the_surface(shape):
     met, forms = 0, forms_of([shape], shape.FLAT)

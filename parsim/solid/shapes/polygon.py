@@ -1,7 +1,7 @@
 """A convex polygon, a body of a plane: its table in a case, and what follows from it."""
 
 import math
-from functools import cached_property
+from functools import cache
 from typing import Annotated, Literal
 
 import numpy as np
@@ -29,7 +29,7 @@ class PolygonShape(ShapeTable):
     kind: Literal["polygon"] = Field(description="a convex polygon; 2D only")
     points: Corners = Field(description="corners (x, z) in their order, m, about any origin")
 
-    @cached_property
+    @property
     def corners(self):
         """Corners (k, 2), m, anticlockwise about its centre."""
         return centred(self.points)
@@ -128,13 +128,14 @@ def faults_of(points):
         yield f"shape.points = {told(points)}: goes around more than once; give each corner once, in order"
 
 
+@cache
 def centred(points):
     """Corners (k, 2), m, anticlockwise, about their centre of area."""
     corners = np.array(points, float)
     x, y = corners.T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y
     if cross.sum() < 0.0:
-        return centred(corners[::-1])
+        return centred(points[::-1])
     middle = (corners + np.roll(corners, -1, axis=0)) * cross[:, None]
     area = cross.sum()
     return corners - (middle.sum(axis=0) / (3.0 * area) if area else 0.0)

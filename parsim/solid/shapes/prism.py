@@ -1,7 +1,7 @@
 """A prism, an upright body on a convex polygon, what floes of ice look like: its table, and what follows from it."""
 
 import math
-from functools import cached_property
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -34,15 +34,10 @@ class PrismShape(ShapeTable):
     points: Corners = Field(description="corners (x, y) in their order, m, about any origin")
     height: Moderate = Field(description="height along z, m")
 
-    @cached_property
+    @property
     def _drawn(self):
-        """(corners (k, 2), m, anticlockwise about its centre, in its principal axes; by how much these are turned)"""
-        corners = centred(self.points)
-        _, (xx, xy, yy) = moments_of(corners)
-        even = abs(xy) <= 1e-9 * (xx + yy)
-        angle = 0.0 if even else 0.5 * math.atan2(2.0 * xy, xx - yy)
-        c, s = math.cos(angle), math.sin(angle)
-        return corners @ np.array([[c, -s], [s, c]]), angle
+        """See `_in_principal_axes`."""
+        return _in_principal_axes(self.points)
 
     @property
     def corners(self):
@@ -137,6 +132,17 @@ class PrismShape(ShapeTable):
         """See `ShapeTable`."""
         rings = polygon_rings(self.corners, spacing)
         return stacked_samples(rings, most_inset(self.corners), self.height, spacing, depth)
+
+
+@cache
+def _in_principal_axes(points):
+    """(corners (k, 2), m, anticlockwise about their centre, in principal axes; by how much these are turned, rad)."""
+    corners = centred(points)
+    _, (xx, xy, yy) = moments_of(corners)
+    even = abs(xy) <= 1e-9 * (xx + yy)
+    angle = 0.0 if even else 0.5 * math.atan2(2.0 * xy, xx - yy)
+    c, s = math.cos(angle), math.sin(angle)
+    return corners @ np.array([[c, -s], [s, c]]), angle
 
 
 def _hat(scale, step):
