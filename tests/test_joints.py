@@ -282,4 +282,8 @@ def test_a_plane_keeps_its_joints():
         parse(given | {"joints": [{"kind": "steady", "body": "a", "velocity": [0.0, 1.0, 0.0]}]})
     with pytest.raises(InputError, match="y must be 0.5 in a 2D case"):
         parse(given | {"joints": [{"kind": "spring", "body": "a", "to": [0.5, 0.0, 0.0], "stiffness": 1.0}]})
+    with pytest.raises(InputError, match="pivot = .*: y must be 0.5 in a 2D case"):
+        parse(given | {"joints": [{"kind": "pendulum", "body": "a", "pivot": [0.5, 0.0, 0.9]}]})
+    with pytest.raises(InputError, match="must begin with zero"):
+        parse(given | {"joints": [{"kind": "schedule", "body": "a", "rows": [[0.0, 0.1, 0, 0], [1.0, 0.2, 0, 0]]}]})
     assert len(JOINTS) == 7

@@ -47,6 +47,8 @@ class ScheduleTable(DrivingTable):
             yield f"rows: times {times[:5]} must grow from row to row"
         if any(len(row) not in (4, 7) for row in self.rows):
             yield "rows: each has 4 numbers (time, x, y, z) or 7 (and the turn about x, y, z)"
+        if any(self.rows[0][1:]):
+            yield f"rows.0 = {list(self.rows[0])}: shift and turn must begin with zero; they count from the start"
         yield from super().faults(body, planar)
 
 

@@ -17,6 +17,8 @@ class PendulumTable(JointTable):
 
     def faults(self, body, planar):
         """See `JointTable`."""
+        if planar and self.pivot[1] != 0.5:
+            yield f"pivot = {list(self.pivot)}: y must be 0.5 in a 2D case"
         if body.position[2] == "float":
             return
         arm = [p - q for p, q in zip(body.position, self.pivot, strict=True)]
