@@ -3,7 +3,7 @@
 import itertools
 
 from parsim.errors import InputError
-from parsim.geometry.shuffle import scatter
+from parsim.geometry.shuffle import swayed
 
 MOST = 10**6
 
@@ -24,13 +24,8 @@ def every(case):
         for number, place in enumerate(itertools.product(range(nz), range(ny), range(nx)), 1):
             shift = [i * step for i, step in zip(reversed(place), body.repeat.step, strict=True)]
             for axis in axes:
-                shift[axis] += body.repeat.disorder * _random(3 * number + axis)
+                shift[axis] += body.repeat.disorder * float(swayed(3 * number + axis))
             position = [p if p == "float" else p + s for p, s in zip(body.position, shift, strict=True)]
             update = {"name": f"{body.name}_{number}", "position": tuple(position), "repeat": None}
             found.append(body.model_copy(update=update))
     return found
-
-
-def _random(number):
-    """A fixed shuffle of a number, from -1 to 1."""
-    return float(scatter(number)) / 2.0**63 - 1.0

@@ -10,3 +10,8 @@ def scatter(index: np.ndarray) -> np.ndarray:
         z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
         z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
         return z ^ (z >> np.uint64(31))
+
+
+def swayed(index: np.ndarray) -> np.ndarray:
+    """A fixed shuffle of each index, from -1 to 1."""
+    return scatter(index) / 2.0**63 - 1.0

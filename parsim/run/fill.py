@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.case.fill import level_over, profile_shares
-from parsim.geometry.shuffle import scatter
+from parsim.geometry.shuffle import scatter, swayed
 from parsim.particles.lattice import Lattice
 from parsim.particles.state import FLUID, Particles, make_id
 from parsim.run.near_bodies import Beside
@@ -101,7 +101,7 @@ def disordered(points: Lattice, number: np.ndarray, first: int, share: float, ax
     place = points.points(number)
     if share:
         for a in axes:
-            move = scatter(3 * (first + number) + a) / 2.0**63 - 1.0
+            move = swayed(3 * (first + number) + a)
             place[:, a] = np.clip(place[:, a] + share * points.spacing[a] * move, *points.rows[a][[0, -1]])
     return place
 

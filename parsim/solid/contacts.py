@@ -78,7 +78,7 @@ class Contacts:
         step.
         """
         bodies.water_load[:] = water_load
-        before = self._tied_now()
+        before = self._tied_now() if self._reacts.size else None
         number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
         if self._hard:
             self.count, self.steps, lost, work, left = advance_hard(self._table, self._touch(), number, dt, self._hard)
@@ -98,7 +98,8 @@ class Contacts:
             bodies.contact_load,
             bodies.spring_load,
         )
-        self._react(before, dt)
+        if before:
+            self._react(before, dt)
 
     def elastic_energy(self):
         """Energy, J, stored in the contacts at the present pose."""
@@ -169,8 +170,6 @@ class Contacts:
 
         That is what changed its energy besides the water; what it does to others is counted with the contacts.
         """
-        if not self._reacts.size:
-            return
         b, at, driven, now = self.bodies, self._reacts, self._by_joints, self._tied_now()
         others = b.water_load[at] + b.contact_load[at] + b.gravity_load[at]
         b.joint_load[at] = (now[0] - before[0]) / dt - others

@@ -147,8 +147,7 @@ def _in_principal_axes(points):
 
 def _hat(scale, step):
     """Share of a triangle from the centre that the points at `scale` of the way to the rim stand for, over its half."""
-    outer = 0.5 * step - step * step / 6.0 if scale == 1.0 else step * scale
-    return 2.0 * 0.5 * outer
+    return 0.5 * step - step * step / 6.0 if scale == 1.0 else step * scale
 
 
 def _ends(at, half, area):
