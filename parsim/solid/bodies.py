@@ -100,7 +100,7 @@ class Bodies:
         if self.planar:
             free[:, [1, 3, 5]] = 0.0
         free[self.held(time)] = 0.0
-        for b, velocity, spin in self.joints.drives(time, dt):
+        for b, velocity, spin in self.drives(time, dt):
             free[b] = 0.0
             given[b] = (*(velocity - self.velocity[b]) / dt, *(spin - self.spin[b]) / dt)
         rod, inwards = np.zeros((len(self), 3)), np.zeros(len(self))
@@ -109,6 +109,16 @@ class Bodies:
             rod[b] = (self.position[b] - pivot) / length
             inwards[b] = (self.velocity[b] @ self.velocity[b]) / length
         return free, given, rod, inwards
+
+    @property
+    def springs(self):
+        """The springs of the joints (k, 14) whose bodies are there."""
+        springs = self.joints.springs
+        return springs[~self.gone[springs[:, 0].astype(int)]] if len(springs) else springs
+
+    def drives(self, time, dt):
+        """What `Joints.drives` gives of the bodies that are there."""
+        return [drive for drive in self.joints.drives(time, dt) if not self.gone[drive[0]]]
 
     @property
     def gone(self):

@@ -7,10 +7,10 @@ import numpy as np
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.rotation import matrices
 from parsim.solid import table
+from parsim.solid.handover import begin, finish
 from parsim.solid.hard import advance_hard
 from parsim.solid.kinetics import kinetic
 from parsim.solid.laws.law import damping_of
-from parsim.solid.motion import begin, finish
 from parsim.solid.search import (
     ELEMENT,
     KEY,
@@ -78,10 +78,12 @@ class Contacts:
         step.
         """
         bodies.water_load[:] = water_load
-        before = self._tied_now() if self._reacts.size else None
-        number, slots, reach = self._prepare(bodies, bodies.held(time), time, dt)
+        before, held = self._tied_now() if self._reacts.size else None, bodies.held(time)
+        number, slots, reach = self._prepare(bodies, held, time, dt)
         if self._hard:
-            self.count, self.steps, lost, work, left = advance_hard(self._table, self._touch(), number, dt, self._hard)
+            self.count, self.steps, lost, work, left = advance_hard(
+                self._table, self._touch(), number, dt, self._hard, self._steps_per_contact
+            )
             self.residual = max(self.residual, left)
         else:
             self.count, self.steps, lost, work = advance(
@@ -99,15 +101,15 @@ class Contacts:
             bodies.spring_load,
         )
         if before:
-            self._react(before, dt)
+            self._react(before, held, dt)
 
     def elastic_energy(self):
         """Energy, J, stored in the contacts at the present pose."""
         if not len(self.bodies):
             return 0.0
-        if self._hard:
-            return float(held_by_springs(self._table, self.bodies.joints.springs))
         number, _, _ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
+        if self._hard:
+            return float(held_by_springs(self._table, self.bodies.springs))
         return float(elastic(self._table, self._touch(), number))
 
     def kept(self):
@@ -138,17 +140,17 @@ class Contacts:
             m[row, table.POSITION : table.POSITION + 3] = plate.centre(time)
             m[row, table.VELOCITY + 2] = plate.velocity(time)
         begin(m, _pose(bodies), bodies.mass, held, bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
-        self._tie(bodies.joints, time, dt)
+        self._tie(bodies, time, dt)
         number, reach = self._list_pairs(bodies.planar, dt)
         return number, self._list_slots(number, reach), reach
 
-    def _tie(self, joints, time, dt):
+    def _tie(self, bodies, time, dt):
         """Let the kernels know of what joints drive, and that springs pull all the time."""
         m = self._table
-        for b in joints.springs[:, 0].astype(int):
+        for b in bodies.springs[:, 0].astype(int):
             if m[b, table.ROLE] == table.ALONE:
                 m[b, table.ROLE] = table.INVOLVED
-        for b, velocity, spin in joints.drives(time, dt):
+        for b, velocity, spin in bodies.drives(time, dt):
             m[b, table.ROLE], m[b, table.LIGHT] = table.DRIVEN, 0.0
             m[b, table.INVERSE : table.INVERSE + 3] = m[b, table.GIVEN : table.GIVEN + 3] = 0.0
             m[b, table.GIVEN + 3 : table.GIVEN + 6] = 0.0
@@ -165,14 +167,15 @@ class Contacts:
         energy = kinetic(*each) - float((b.mass[driven, None] * b.position[driven] @ self._gravity).sum())
         return momentum, b.position[driven], energy
 
-    def _react(self, before, dt):
+    def _react(self, before, held, dt):
         """Note the loads of joints, what changed the momentum besides other loads; count the work of what is driven.
 
-        That is what changed its energy besides the water; what it does to others is counted with the contacts.
+        That is what changed its energy besides the water; what it does to others is counted with the contacts. On what
+        is `held` (nb,) only springs act.
         """
         b, at, driven, now = self.bodies, self._reacts, self._by_joints, self._tied_now()
         others = b.water_load[at] + b.contact_load[at] + b.gravity_load[at]
-        b.joint_load[at] = (now[0] - before[0]) / dt - others
+        b.joint_load[at] = np.where(held[at, None], b.spring_load[at], (now[0] - before[0]) / dt - others)
         by_water = float((b.water_load[driven, :3] * (now[1] - before[1])).sum())
         by_water += dt * float((b.water_load[driven, 3:] * b.spin[driven]).sum())
         self.driven_work += now[2] - before[2] - by_water
@@ -190,7 +193,7 @@ class Contacts:
             self._slots,
             self._tanks,
             self._forms,
-            self.bodies.joints.springs,
+            self.bodies.springs,
         )
 
     def _list_pairs(self, planar, dt):

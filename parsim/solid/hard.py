@@ -15,7 +15,7 @@ from parsim.solid.motion import alone, clear_loads, drift_involved, foresee, kic
 from parsim.solid.points import points_of
 from parsim.solid.search import STRETCH, TOUCHING, A, B
 from parsim.solid.shapes.kernels import touches_at_one_point
-from parsim.solid.springs import pull_springs
+from parsim.solid.springs import pull_springs, rate_of_springs
 from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SPIN, VELOCITY, shape_of, three
 from parsim.solid.touch import normal_of
 
@@ -26,21 +26,25 @@ _LIES = 4.0  # times the speed that loads give a body in a step, below which wha
 
 
 @kernel
-def advance_hard(m, touch, number, dt, law):
+def advance_hard(m, touch, number, dt, law, steps_per_swing):
     """Move all bodies over `dt`, s; (points that touch, cuts, energy dissipated, J, work of what is driven, residual).
 
     law: sweeps and residual of `laws.impulse`. The residual is the largest that was left, over the largest speed.
+    Springs to the world cut the step too: steps in half a period of a body on them.
     """
     alone(m, dt)
     if number == 0 and len(touch.springs) == 0:
         drift_involved(m, dt)
         return 0, 1, 0.0, 0.0, 0.0
-    lost, work, cuts, rest, left, touching = 0.0, 0.0, 0, dt, 0.0, 0
-    lies = _LIES * _gains(m, dt)
+    lost, work, cuts, rest, left, touching, meetings = 0.0, 0.0, 0, dt, 0.0, 0, 0
+    lies, rate = _LIES * _gains(m, dt), rate_of_springs(m, touch.springs, dt)
+    longest = math.pi / (steps_per_swing * math.sqrt(rate)) if rate > 0.0 else dt
     while rest > 0.0:
-        span = rest
-        if cuts < _MEETINGS:
-            span = min(max(_time_to_meet(m, touch, number, rest, lies), _LEAST * dt), rest)
+        span = rest / math.ceil(rest / longest)
+        if meetings < _MEETINGS:
+            meeting = max(_time_to_meet(m, touch, number, rest, lies), _LEAST * dt)
+            if meeting < span:
+                span, meetings = meeting, meetings + 1
         drift_involved(m, 0.5 * span)
         clear_loads(m)
         pull_springs(m, touch.springs)

@@ -13,22 +13,9 @@ import numpy as np
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
 from parsim.solid.forces import coefficients
-from parsim.solid.motion import answer
+from parsim.solid.motion import answer, update_momentum
 from parsim.solid.search import A, B
-from parsim.solid.table import (
-    DRIVEN,
-    INERTIA,
-    INVOLVED,
-    LIGHT,
-    MEAN,
-    MOMENTUM,
-    ROLE,
-    SPIN,
-    TOTAL,
-    VELOCITY,
-    three,
-    turn_at,
-)
+from parsim.solid.table import DRIVEN, INERTIA, INVOLVED, LIGHT, MEAN, ROLE, SPIN, TOTAL, VELOCITY, three, turn_at
 
 
 @kernel
@@ -73,16 +60,6 @@ def _hit(m, b, arm, f):
 
 
 @kernel
-def _settle(m):
-    """Bring the angular momenta of the bodies in line with their spins."""
-    for b in range(len(m)):
-        if m[b, ROLE] == INVOLVED:
-            w = three(m, b, SPIN)
-            h = scaled(turn_at(m, b), three(m, b, INERTIA), w[0], w[1], w[2])
-            m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
-
-
-@kernel
 def _energy(m):
     """Kinetic energy of the bodies that may touch, J."""
     energy = 0.0
@@ -107,7 +84,9 @@ def solve(m, touch, points, law, meeting):
         points.wanted[:] = 0.0
         off = max(off, _sweep(m, touch, points, law))
         _slow(m, start, end, before)
-    _settle(m)
+    for b in range(len(m)):
+        if m[b, ROLE] == INVOLVED:
+            update_momentum(m, b)
     return _lost(m, start), _driven_work(m, start), off
 
 

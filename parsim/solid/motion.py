@@ -14,7 +14,6 @@ from parsim.solid.table import (
     DRIVEN,
     FREE,
     GIVEN,
-    HELD,
     INERTIA,
     INVERSE,
     INVOLVED,
@@ -43,55 +42,7 @@ from parsim.solid.table import (
     turns_freely,
 )
 
-
-@kernel
-def begin(m, pose, mass, held, water, gravity, planar, weight):
-    """Take over pose, velocity and spin of the bodies and set all that follows from them in the table `m`.
-
-    `water` (nb, 6): constant load; `held` (nb,): bodies that do not move; `weight` (nb, 6) receives gravity's load.
-    In 2D only x, z and turns about y remain. `pose`: position, quaternion, velocity and spin of all bodies.
-    """
-    position, quaternion, velocity, spin = pose
-    for b in range(mass.size):
-        still = held[b]
-        m[b, ROLE], m[b, LIGHT] = (HELD, 0.0) if still else (ALONE, 1.0 / mass[b])
-        for a in range(4):
-            m[b, QUATERNION + a] = quaternion[b, a]
-        for a in range(3):
-            off, no_turn = still or (planar and a == 1), still or (planar and a != 1)
-            weight[b, a], weight[b, 3 + a] = mass[b] * gravity[a], 0.0
-            m[b, POSITION + a] = position[b, a]
-            m[b, VELOCITY + a] = 0.0 if off else velocity[b, a]
-            m[b, SPIN + a] = 0.0 if no_turn else spin[b, a]
-            m[b, GIVEN + a] = 0.0 if off else water[b, a] + weight[b, a]
-            m[b, GIVEN + 3 + a] = 0.0 if no_turn else water[b, 3 + a]
-            m[b, INVERSE + a] = 0.0 if still else 1.0 / m[b, INERTIA + a]
-        t = matrix(quaternion_of(m, b))
-        for k in range(9):
-            m[b, TURN + k] = t[k]
-        w = three(m, b, SPIN)
-        h = scaled(t, three(m, b, INERTIA), w[0], w[1], w[2])
-        m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
-    for b in range(len(m)):
-        for k in range(6):
-            m[b, TOTAL + k] = m[b, MEAN + k] = m[b, TIED + k] = m[b, LOAD + k] = m[b, PULL + k] = 0.0
-
-
-@kernel
-def finish(m, dt, pose, acceleration, angular, contact, pull):
-    """Hand pose, velocity and spin back, with the accelerations and the mean loads of the step `dt`, s, by contacts and
-    by springs to the world."""
-    position, quaternion, velocity, spin = pose
-    for b in range(len(position)):
-        for a in range(3):
-            acceleration[b, a] = (m[b, VELOCITY + a] - velocity[b, a]) / dt
-            angular[b, a] = (m[b, SPIN + a] - spin[b, a]) / dt
-            position[b, a], velocity[b, a] = m[b, POSITION + a], m[b, VELOCITY + a]
-            spin[b, a] = m[b, SPIN + a]
-        for a in range(4):
-            quaternion[b, a] = m[b, QUATERNION + a]
-        for k in range(6):
-            contact[b, k], pull[b, k] = m[b, TOTAL + k] / dt, m[b, TIED + k] / dt
+_MIDPOINTS = 4  # rounds of the midpoint rule
 
 
 @kernel
@@ -111,24 +62,45 @@ def drift(m, b, dt):
             m[b, POSITION + a] += dt * m[b, VELOCITY + a]
     if turns_freely(m, b):
         momentum = three(m, b, MOMENTUM)
-        if momentum[0] == 0.0 and momentum[1] == 0.0 and momentum[2] == 0.0:
-            return
-        q = free_turn(quaternion_of(m, b), momentum, three(m, b, INVERSE), dt)
+        if momentum != (0.0, 0.0, 0.0):
+            _stand(m, b, free_turn(quaternion_of(m, b), momentum, three(m, b, INVERSE), dt))
+            _update_spin(m, b)
     else:
-        q = unit(turned(turn_of(dt * m[b, SPIN], dt * m[b, SPIN + 1], dt * m[b, SPIN + 2]), quaternion_of(m, b)))
+        _turn_guided(m, b, dt)
+        update_momentum(m, b)
+
+
+@kernel
+def _stand(m, b, q):
+    """Turn body `b` to the quaternion `q`."""
     t = matrix(q)
     for k in range(4):
         m[b, QUATERNION + k] = q[k]
     for k in range(9):
         m[b, TURN + k] = t[k]
-    if turns_freely(m, b):
-        _update_spin(m, b)
-    else:
-        _update_momentum(m, b)
 
 
 @kernel
-def _update_momentum(m, b):
+def _turn_guided(m, b, dt):
+    """Turn a body that may turn about some axes of space only.
+
+    About two of them its momentum stays, and its spin does not, as the moments about them change: midpoint rule.
+    """
+    start, h = quaternion_of(m, b), three(m, b, MOMENTUM)
+    w = three(m, b, SPIN)
+    two = m[b, LIGHT] > 0.0 and m[b, FREE + 3] + m[b, FREE + 4] + m[b, FREE + 5] == 2.0
+    if two:
+        for _ in range(_MIDPOINTS):
+            _stand(m, b, unit(turned(turn_of(0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]), start)))
+            w = _guided_turn(m, b, h[0], h[1], h[2])
+    _stand(m, b, unit(turned(turn_of(dt * w[0], dt * w[1], dt * w[2]), start)))
+    if two:
+        m[b, SPIN], m[b, SPIN + 1], m[b, SPIN + 2] = _guided_turn(m, b, h[0], h[1], h[2])
+
+
+@kernel
+def update_momentum(m, b):
+    """Bring the angular momentum of body `b` in line with its spin."""
     w = three(m, b, SPIN)
     h = scaled(turn_at(m, b), three(m, b, INERTIA), w[0], w[1], w[2])
     m[b, MOMENTUM], m[b, MOMENTUM + 1], m[b, MOMENTUM + 2] = h
@@ -196,9 +168,6 @@ def kick(m, b, dt):
             m[b, VELOCITY + a] += dt * m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
             m[b, MOMENTUM + a] += dt * (m[b, GIVEN + 3 + a] + m[b, LOAD + 3 + a])
         _update_spin(m, b)
-    for k in range(6):
-        m[b, TOTAL + k] += dt * (m[b, LOAD + k] - m[b, PULL + k])
-        m[b, TIED + k] += dt * m[b, PULL + k]
 
 
 @kernel
@@ -213,7 +182,7 @@ def _kick_tied(m, b, dt):
         return
     for k in range(3):
         m[b, SPIN + k] += dt * w[k]
-    _update_momentum(m, b)
+    update_momentum(m, b)
 
 
 @kernel
@@ -272,6 +241,8 @@ def kick_involved(m, dt):
     for b in range(len(m)):
         for k in range(6):
             lost -= dt * m[b, LOSS + k] * m[b, MEAN + k]
+            m[b, TOTAL + k] += dt * (m[b, LOAD + k] - m[b, PULL + k])
+            m[b, TIED + k] += dt * m[b, PULL + k]
         if m[b, ROLE] == INVOLVED:
             kick(m, b, dt)
         elif m[b, ROLE] == DRIVEN:

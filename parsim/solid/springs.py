@@ -1,20 +1,30 @@
 """Springs from bodies to points and lines of the world: moorings, booms. Rows of `springs`: see `ties.Joints`."""
 
-import math
-
 from parsim.geometry.rotation import to_global
 from parsim.machine.jit import kernel
-from parsim.solid.motion import answer
-from parsim.solid.table import LOAD, LOSS, POSITION, PULL, SPIN, VELOCITY, three, turn_at
+from parsim.solid.speeds import length, speed_of
+from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, POSITION, PULL, SPIN, VELOCITY, three, turn_at
 
 BODY, AT, FROM, TO, STIFFNESS, DAMPING, LENGTH, SLACK = 0, 1, 4, 7, 10, 11, 12, 13
+_NONE, _X, _Y, _Z = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_STEEPEST = 100.0  # times its stiffness that a spring pressed to almost nothing acts across
+_MARGIN = 1.5  # a body that is hit may become faster
 
 
 @kernel
 def _stretched(m, springs, k):
+    """The same as `_away`, but for what is slack: nowhere, 0."""
+    arm, e, more = _away(m, springs, k)
+    if springs[k, SLACK] > 0.0 and more <= 0.0:
+        return arm, _NONE, 0.0
+    return arm, e, more
+
+
+@kernel
+def _away(m, springs, k):
     """(arm (3,) from the centre, m, unit vector (3,) away from where it is fixed, by how much it is longer, m).
 
-    A spring without length has no direction and does not pull.
+    A spring that ends where it begins has no direction and does not pull.
     """
     b = int(springs[k, BODY])
     x, y, z = to_global(turn_at(m, b), springs[k, AT], springs[k, AT + 1], springs[k, AT + 2])
@@ -25,11 +35,10 @@ def _stretched(m, springs, k):
     if square > 0.0:
         share = min(max(((px - ax) * lx + (py - ay) * ly + (pz - az) * lz) / square, 0.0), 1.0)
     dx, dy, dz = px - ax - share * lx, py - ay - share * ly, pz - az - share * lz
-    length = math.sqrt(dx * dx + dy * dy + dz * dz)
-    more = length - springs[k, LENGTH]
-    if length == 0.0 or (springs[k, SLACK] > 0.0 and more <= 0.0):
-        return (x, y, z), (0.0, 0.0, 0.0), 0.0
-    return (x, y, z), (dx / length, dy / length, dz / length), more
+    far = length((dx, dy, dz))
+    if far == 0.0:
+        return (x, y, z), _NONE, -springs[k, LENGTH]
+    return (x, y, z), (dx / far, dy / far, dz / far), far - springs[k, LENGTH]
 
 
 @kernel
@@ -63,19 +72,33 @@ def held_by_springs(m, springs):
 
 
 @kernel
-def rate_of_springs(m, springs):
-    """Bound of the square of the largest angular frequency of bodies on springs, 1/s2: those of a body add up."""
+def rate_of_springs(m, springs, dt):
+    """Bound of the square of the largest angular frequency of bodies on springs, 1/s2, within `dt`, s.
+
+    Those of a body add up. A spring acts along itself with its stiffness and across with tension over length, as a
+    pendulum does; it turns its body by tension times arm. The largest counts, so that the bound of what is not pressed
+    together does not change with the pose: sub-steps that follow the swing make or take energy. A rope counts if it
+    may become taut.
+    """
     largest = 0.0
     for k in range(len(springs)):
-        b, total = int(springs[k, BODY]), 0.0
+        b, total, damped = int(springs[k, BODY]), 0.0, 0.0
+        turning = max(m[b, INVERSE], m[b, INVERSE + 1], m[b, INVERSE + 2])
         for j in range(len(springs)):
-            if int(springs[j, BODY]) == b:
-                (x, y, z), e, _ = _stretched(m, springs, j)
-                f = (e[0], e[1], e[2], y * e[2] - z * e[1], z * e[0] - x * e[2], x * e[1] - y * e[0])
-                a, w = answer(m, b, f)
-                soft = f[0] * a[0] + f[1] * a[1] + f[2] * a[2] + (f[3] * w[0] + f[4] * w[1] + f[5] * w[2])
-                total += springs[j, STIFFNESS] * soft
-                hasty = springs[j, DAMPING] * soft
-                total += hasty * hasty
-        largest = max(largest, total)
+            if int(springs[j, BODY]) == b and _may_pull(m, springs, j, dt):
+                arm, _, away = _away(m, springs, j)
+                tension, arm = abs(away) if springs[j, SLACK] == 0.0 else max(away, 0.0), length(arm)
+                across = min(tension / max(away + springs[j, LENGTH], 1e-300), _STEEPEST)
+                soft = m[b, LIGHT] + arm * arm * turning
+                total += springs[j, STIFFNESS] * max(soft * max(across, 1.0), tension * arm * turning)
+                damped += springs[j, DAMPING] * soft
+        largest = max(largest, total + damped * damped)
     return largest
+
+
+@kernel
+def _may_pull(m, springs, k, dt):
+    """Whether a spring may pull within `dt`, s."""
+    if springs[k, SLACK] == 0.0:
+        return True
+    return _away(m, springs, k)[2] + _MARGIN * dt * speed_of(m, int(springs[k, BODY]), dt) > 0.0

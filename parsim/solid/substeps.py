@@ -36,7 +36,7 @@ def advance(m, touch, number, dt, reach, steps_per_contact, state):
         return 0, 1, lost, 0.0
     lost, steps, work = state[0], 0, 0.0
     touching = press(m, touch, number, 0.0, 0.0)
-    longest = _longest(m, touch, number, steps_per_contact, reach)
+    longest = _longest(m, touch, number, dt, steps_per_contact, reach)
     rest, pending = dt, 0.0
     while rest > 0.0:
         count = max(math.ceil(rest / longest), 1)
@@ -56,7 +56,7 @@ def advance(m, touch, number, dt, reach, steps_per_contact, state):
 
 
 @kernel
-def _longest(m, touch, number, steps_per_contact, reach):
+def _longest(m, touch, number, dt, steps_per_contact, reach):
     """Longest sub-step, s: the half period pi / sqrt(k A / m*) of a body on what it may touch, over the steps for it.
 
     All elements listed count as if they touched; a body's pairs are summed by rows of the matrix of k/m* n n, whose
@@ -64,7 +64,7 @@ def _longest(m, touch, number, steps_per_contact, reach):
     need only be stable: they take _AT_REST steps.
     """
     pairs, shift = touch.pairs, touch.shift
-    rate, largest = np.zeros((len(m), 3)), rate_of_springs(m, touch.springs) * steps_per_contact * steps_per_contact
+    rate, largest = np.zeros((len(m), 3)), 0.0
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
         apart, x, y, z = normal_of(m, touch, c)
@@ -84,6 +84,7 @@ def _longest(m, touch, number, steps_per_contact, reach):
                 rate[body, 1] += rigid * v * (u + v + w)
                 rate[body, 2] += rigid * w * (u + v + w)
                 largest = max(largest, rate[body, 0], rate[body, 1], rate[body, 2])
+    largest += rate_of_springs(m, touch.springs, dt) * steps_per_contact * steps_per_contact
     return math.pi / math.sqrt(largest) if largest > 0.0 else math.inf
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from parsim.case.examples import paths
 from parsim.errors import InputError, nearest, suggestion
+from parsim.validate.measures import MEASURES
 
 LEVELS = ("quick", "full")
 FILE = "_bars.toml"
@@ -67,6 +68,9 @@ def _read(file: Path) -> Iterator[Bar]:
     for stem, table in cases.items():
         for row in table["bars"]:
             given = dict(row)
+            if given.get("measure") not in MEASURES:
+                likely = suggestion(nearest(str(given.get("measure")), MEASURES))
+                raise InputError(f"{file}: {stem}: measure = {given.get('measure')}: there is no such one{likely}")
             yield Bar(
                 case=f"{file.parent.name}/{stem}",
                 level=table["level"],

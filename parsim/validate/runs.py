@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import parsim
+from parsim.output.reader import is_output
 from parsim.report.measures import Published, published
 from parsim.validate.bars import Bar, bars
 from parsim.validate.measures import MEASURES
@@ -21,7 +22,7 @@ MISSED = 3
 def validate(names: Iterable[str], level: str, as_json: bool, out: Path | None, ranks: int) -> int:
     """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed.
 
-    Runs whose output is in `out` already are measured as they are.
+    Runs whose output is in `out` go on there, if they are of the same case and not done.
     """
     held = bars(list(names), level)
     with tempfile.TemporaryDirectory() as scratch:
@@ -41,7 +42,7 @@ def _rows(held: dict[Path, list[Bar]], folder: Path, ranks: int, quiet: bool) ->
         out = folder / f"{path.parent.name}-{path.stem}"
         if not quiet:
             print(f"{each[0].case}", flush=True)
-        whole = (out / "run.json").is_file() or _run(path, out, ranks)
+        whole = _run(path, out, ranks)
         run = parsim.open(out) if whole else None
         numbers = {number.quantity: number for number in published(run)} if run else {}
         for bar in each:
@@ -52,8 +53,9 @@ def _rows(held: dict[Path, list[Bar]], folder: Path, ranks: int, quiet: bool) ->
 
 
 def _run(path: Path, out: Path, ranks: int) -> bool:
-    words = [sys.executable, "-m", "parsim", "run", str(path), "-o", str(out)]
-    ran = subprocess.run([*words, *(["-n", str(ranks)] if ranks > 1 else [])], capture_output=True, text=True)
+    words = ["resume", str(out), "--case", str(path)] if is_output(out) else ["run", str(path), "-o", str(out)]
+    words = [sys.executable, "-m", "parsim", *words, *(["-n", str(ranks)] if ranks > 1 else [])]
+    ran = subprocess.run(words, capture_output=True, text=True)
     if ran.returncode:
         print(ran.stderr, file=sys.stderr)
     return ran.returncode == 0

@@ -1,0 +1,80 @@
+"""`parsim validate`: what it runs, how it judges, and what it says of wrong bars."""
+
+import json
+import subprocess
+from types import SimpleNamespace
+
+import pytest
+
+from parsim.errors import InputError
+from parsim.report.measures import Published
+from parsim.validate import bars as held
+from parsim.validate import runs
+from parsim.validate.bars import Bar
+
+BAR = Bar("case/one", "quick", "height", "apex", 0.01, False, {})
+
+
+def number(low, high=None, model=None):
+    """A published number or range."""
+    fields = dict.fromkeys(Published.__dataclass_fields__, None)
+    return Published(**fields | {"low": low, "high": low if high is None else high, "model": model, "unit": "m"})
+
+
+@pytest.mark.parametrize(("value", "low", "high", "error", "passed"), [
+    (1.005, 1.0, None, 0.005, True),
+    (1.02, 1.0, None, 0.02, False),
+    (0.98, 1.0, None, -0.02, False),
+    (1.5, 1.0, 2.0, 0.0, True),
+    (2.1, 1.0, 2.0, 0.05, False),
+    (0.005, 0.0, None, 0.005, True),
+    (None, 1.0, None, None, False),
+])  # fmt: skip
+def test_a_value_is_held_to_a_number_or_a_range(value, low, high, error, passed):
+    row = runs.judged(BAR, value, number(low, high, model=1.1 * low))
+    assert row["passed"] is passed
+    assert row["error"] == (None if error is None else pytest.approx(error))
+    assert ("MISSED" in runs.told(row)) == (not passed and value is not None)
+
+
+def test_without_a_number_the_value_is_the_error():
+    assert runs.judged(BAR, 0.02, None)["error"] == 0.02
+
+
+def test_a_measure_that_is_not_there_is_told(tmp_path):
+    file = tmp_path / held.FILE
+    file.write_text('[one]\nlevel = "quick"\n[[one.bars]]\nquantity = "h"\nmeasure = "apexx"\nwithin = 0.1\n')
+    with pytest.raises(InputError, match=r"one: measure = apexx: there is no such one.*did you mean apex"):
+        list(held._read(file))
+
+
+@pytest.mark.parametrize(("names", "level", "said"), [
+    (["bouncing_spher"], "quick", "no such example.*bouncing_sphere"),
+    ([], "slow", "must be quick or full"),
+])  # fmt: skip
+def test_a_name_or_level_that_is_not_there_is_told(names, level, said):
+    with pytest.raises(InputError, match=said):
+        held.bars(names, level)
+
+
+def test_every_bar_of_the_cases_is_read():
+    every = held.bars([], "full")
+    assert len(every) >= 6 and all(each for each in every.values())
+    assert sum(len(each) for each in held.bars([], "quick").values()) < sum(len(each) for each in every.values())
+
+
+def test_a_run_goes_on_where_it_is_and_one_of_another_case_is_refused(tmp_path, monkeypatch):
+    """Not what is in the folder decides, but `parsim resume --case`."""
+    said = []
+
+    def run(words, **options):
+        said.append(words[3:])
+        return SimpleNamespace(returncode=2, stderr="another case")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    file, out = tmp_path / "a.toml", tmp_path / "out"
+    assert not runs._run(file, out, 1)
+    out.mkdir()
+    (out / "run.json").write_text(json.dumps({"status": "running"}))
+    assert not runs._run(file, out, 2)
+    assert said == [["run", str(file), "-o", str(out)], ["resume", str(out), "--case", str(file), "-n", "2"]]
