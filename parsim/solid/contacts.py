@@ -11,6 +11,7 @@ from parsim.solid.handover import begin, finish
 from parsim.solid.hard import advance_hard
 from parsim.solid.kinetics import kinetic
 from parsim.solid.laws.law import damping_of
+from parsim.solid.nearby import near_pairs
 from parsim.solid.search import (
     ELEMENT,
     KEY,
@@ -19,7 +20,6 @@ from parsim.solid.search import (
     TOUCHING,
     Touch,
     fill_slots,
-    near_pairs,
     recall,
     room_for_pairs,
     room_for_slots,
@@ -29,7 +29,7 @@ from parsim.solid.shapes import elements_of
 from parsim.solid.shapes.forms import forms_of
 from parsim.solid.springs import held_by_springs
 from parsim.solid.substeps import advance, elastic
-from parsim.solid.tanks import LOST, recall_tanks, room_for_tanks
+from parsim.solid.tanks import KEPT, SHEAR, recall_tanks, room_for_tanks
 
 _SHARE = 0.1  # of the smallest edge that a body may move in one step
 
@@ -60,11 +60,11 @@ class Contacts:
         self._marks, self._slots = room_for_slots(4096)
         self._smallest = 2.0 * _thinnest(bodies) if len(bodies) else math.inf
         self.dissipated = self.driven_work = self._time = 0.0
-        self.count, self.steps, self._state = 0, 0, np.zeros(2)
+        self.count, self.steps = 0, 0
         self._reacts = np.flatnonzero(bodies.joints.reacts)
         self._by_joints = np.array([b for b, *_ in bodies.joints.driven], int)
         self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 6))
-        self._pair, self._stored = np.zeros(0, np.int64), np.zeros((0, 2))
+        self._pair, self._stored = np.zeros(0, np.int64), np.zeros((0, KEPT))
 
     def limit(self):
         """Largest step of the water, s, over which the normals of contacts may be kept; inf when nothing moves."""
@@ -79,7 +79,8 @@ class Contacts:
         """
         bodies.water_load[:] = water_load
         before, held = self._tied_now() if self._reacts.size else None, bodies.held(time)
-        number, slots, reach = self._prepare(bodies, held, time, dt)
+        number, slots, reach, lost = self._prepare(bodies, held, time, dt)
+        self.dissipated += lost
         if self._hard:
             self.count, self.steps, lost, work, left = advance_hard(
                 self._table, self._touch(), number, dt, self._hard, self._steps_per_contact
@@ -87,7 +88,7 @@ class Contacts:
             self.residual = max(self.residual, left)
         else:
             self.count, self.steps, lost, work = advance(
-                self._table, self._touch(), number, dt, reach, self._steps_per_contact, self._state
+                self._table, self._touch(), number, dt, reach, self._steps_per_contact
             )
         self.dissipated, self.driven_work, self._time = self.dissipated + lost, self.driven_work + work, time + dt
         self._remember(number, slots)
@@ -107,14 +108,14 @@ class Contacts:
         """Energy, J, stored in the contacts at the present pose."""
         if not len(self.bodies):
             return 0.0
-        number, _, _ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
+        number, *_ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
         if self._hard:
             return float(held_by_springs(self._table, self.bodies.springs))
         return float(elastic(self._table, self._touch(), number))
 
     def kept(self):
         """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
-        totals = np.array([self.dissipated, self.driven_work, self._time, *self._state])
+        totals = np.array([self.dissipated, self.driven_work, self._time])
         return {
             "key": self._key.copy(),
             "element": self._element.copy(),
@@ -127,22 +128,22 @@ class Contacts:
     def restore(self, kept):
         """Go on from what `kept` returned."""
         self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
-        self._stored = np.array(kept["stored"], float).reshape(-1, 2)
+        self._stored = np.array(kept["stored"], float).reshape(-1, KEPT)
         self._stretch = np.array(kept["stretch"], float).reshape(-1, 6)
-        self.dissipated, self.driven_work, self._time = (float(v) for v in kept["totals"][:3])
-        self._state = np.array(kept["totals"][3:], float)
+        self.dissipated, self.driven_work, self._time = (float(v) for v in kept["totals"])
         self.count = len(self._key)
 
     def _prepare(self, bodies, held, time, dt):
-        """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m)."""
+        """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m,
+        energy, J, in friction springs of what may touch no more)."""
         m = self._table
         for row, plate in enumerate(self._driven, len(bodies)):
             m[row, table.POSITION : table.POSITION + 3] = plate.centre(time)
             m[row, table.VELOCITY + 2] = plate.velocity(time)
         begin(m, _pose(bodies), bodies.mass, held, bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
         self._tie(bodies, time, dt)
-        number, reach = self._list_pairs(bodies.planar, dt)
-        return number, self._list_slots(number, reach), reach
+        number, reach, forgotten = self._list_pairs(bodies.planar, dt)
+        return number, self._list_slots(number, reach), reach, forgotten
 
     def _tie(self, bodies, time, dt):
         """Let the kernels know of what joints drive, and that springs pull all the time."""
@@ -181,6 +182,7 @@ class Contacts:
         self.driven_work += now[2] - before[2] - by_water
 
     def _touch(self):
+        springs = self.bodies.springs
         return Touch(
             self._first,
             self._elements,
@@ -193,15 +195,12 @@ class Contacts:
             self._slots,
             self._tanks,
             self._forms,
-            self.bodies.springs,
+            springs,
+            np.searchsorted(springs[:, 0], np.arange(len(self._table) + 1)),
         )
 
     def _list_pairs(self, planar, dt):
-        place = self._table[: len(self.bodies), table.POSITION].copy()
-        if self._period[0] < math.inf:
-            place = place - self._period[0] * np.floor(place / self._period[0])
-        order = np.argsort(place, kind="stable")
-        find = self._period, planar, dt, place, order
+        find = self._period, planar, dt, len(self.bodies)
         number, reach = near_pairs(self._table, self._touch(), *find)
         if number > len(self._pairs):
             self._pairs, self._shift = room_for_pairs(2 * number)
@@ -210,8 +209,8 @@ class Contacts:
             sort_pairs(self._pairs, self._shift, number)
         if number > len(self._tanks):
             self._tanks = room_for_tanks(2 * number)
-        recall_tanks(self._touch(), number, self._pair, self._stored)
-        return number, reach
+        forgotten = recall_tanks(self._touch(), number, self._pair, self._stored)
+        return number, reach, forgotten
 
     def _list_slots(self, number, reach):
         if number == 0:
@@ -226,8 +225,8 @@ class Contacts:
     def _remember(self, number, count):
         if not count and not len(self._key) and not len(self._pair):
             return
-        at = np.flatnonzero(self._tanks[:number, : LOST + 1].any(axis=1))
-        self._pair, self._stored = self._pairs[at, KEY], self._tanks[at, : LOST + 1]
+        at = np.flatnonzero(self._tanks[:number, : SHEAR + 1].any(axis=1))
+        self._pair, self._stored = self._pairs[at, KEY], self._tanks[at, :KEPT]
         at = np.flatnonzero(self._marks[:count, TOUCHING])
         self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]
         self._stretch = self._slots[at, STRETCH:]

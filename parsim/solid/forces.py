@@ -4,32 +4,35 @@ import math
 
 from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
+from parsim.solid.balls import press_balls
 from parsim.solid.element import friction_force, normal_force, rolling_torque
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.motion import answer, clear_loads
-from parsim.solid.search import AREA, DEPTH, FIRST, LAST, POINT, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
-from parsim.solid.separation import between
+from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
+from parsim.solid.separation import BALLS, between
 from parsim.solid.speeds import speed_of
 from parsim.solid.springs import pull_springs
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, is_tied, three, turn_at
-from parsim.solid.tanks import BEND, DEEP, LOADS, RADIUS, SHARE, load_pair
+from parsim.solid.tanks import BEND, DEEP, LAPSE, LOADS, RADIUS, SHARE, load_pair
 from parsim.solid.touch import centre_of, measure, normal_of
 
 _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def press(m, touch, number, lapse, span):
-    """Loads of the first `number` pairs and of springs into the table and the tanks; how many elements touch.
+def press(m, touch, island, lapse, span):
+    """Loads of the pairs of an island and of its springs into the table and the tanks; how many elements touch.
 
     `pair_law` (5, n, n): what the law needs, damping ratio, friction, shear, rolling friction over materials. `lapse`:
-    time since the last call, s, by which friction springs have stretched; `span`: of the kick that comes, s. 50 ns an
-    element that touches, 1 us a pair that overlaps.
+    time since the last call in this step, s, by which friction springs have stretched; `span`: of the kick that comes,
+    s; 0 to look only. 50 ns an element that touches, 1 us a pair that overlaps.
     """
-    pairs, marks = touch.pairs, touch.marks
-    clear_loads(m)
-    touching = 0
-    for c in range(number):
+    pairs, marks, tanks, (rows, own, which) = touch.pairs, touch.marks, touch.tanks, island
+    clear_loads(m, rows)
+    touching = press_balls(m, touch, which, lapse, span)
+    for c in which:
+        if pairs[c, FEATURE] == BALLS:
+            continue
         apart, x, y, z = normal_of(m, touch, c)
         area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
         if area == 0.0:
@@ -37,8 +40,11 @@ def press(m, touch, number, lapse, span):
                 marks[slot, TOUCHING] = 0
             load_pair(m, touch, c, 0.0, 0.0, _NO_LOAD, _NO_LOAD)
             continue
-        touching += _push(m, touch, c, (x, y, z), area, (lapse, span))
-    pull_springs(m, touch.springs)
+        touching += _push(m, touch, c, (x, y, z), area, (lapse + tanks[c, LAPSE] if span > 0.0 else 0.0, span))
+    pull_springs(m, touch, rows[:own])
+    if span > 0.0:
+        for c in which:
+            tanks[c, LAPSE] = 0.0
     return touching
 
 
@@ -201,11 +207,11 @@ def velocity_at(motion, x, y, z):
 
 
 @kernel
-def free_time(m, touch, number, dt):
+def free_time(m, touch, which, dt):
     """A time, s, at most `dt`, in which no pair that is apart can touch; 0 if one overlaps."""
     pairs = touch.pairs
     least = dt
-    for c in range(number):
+    for c in which:
         apart = normal_of(m, touch, c)[0]
         speed = speed_of(m, pairs[c, A], dt)
         if pairs[c, B] >= 0:

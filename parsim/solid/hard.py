@@ -8,6 +8,8 @@ of the other laws where it is in the other body; bodies lie _SINK of their width
 
 import math
 
+import numpy as np
+
 from parsim.machine.jit import kernel
 from parsim.solid.forces import coefficients
 from parsim.solid.impulses import solve, velocity_of
@@ -15,8 +17,8 @@ from parsim.solid.motion import alone, clear_loads, drift_involved, foresee, kic
 from parsim.solid.points import points_of
 from parsim.solid.search import STRETCH, TOUCHING, A, B
 from parsim.solid.shapes.kernels import touches_at_one_point
-from parsim.solid.springs import pull_springs, rate_of_springs
-from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SPIN, VELOCITY, shape_of, three
+from parsim.solid.springs import pull_springs, rate_springs
+from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SPIN, SWING, VELOCITY, shape_of, three
 from parsim.solid.touch import normal_of
 
 _SINK = 1e-6  # of the least half width of a pair's bodies, that they sink into each other
@@ -33,11 +35,13 @@ def advance_hard(m, touch, number, dt, law, steps_per_swing):
     Springs to the world cut the step too: steps in half a period of a body on them.
     """
     alone(m, dt)
+    every = np.arange(len(m))
     if number == 0 and len(touch.springs) == 0:
-        drift_involved(m, dt)
+        drift_involved(m, every, dt)
         return 0, 1, 0.0, 0.0, 0.0
     lost, work, cuts, rest, left, touching, meetings = 0.0, 0.0, 0, dt, 0.0, 0, 0
-    lies, rate = _LIES * _gains(m, dt), rate_of_springs(m, touch.springs, dt)
+    rate_springs(m, touch, dt)
+    lies, rate = _LIES * _gains(m, dt), np.max(m[:, SWING])
     longest = math.pi / (steps_per_swing * math.sqrt(rate)) if rate > 0.0 else dt
     while rest > 0.0:
         span = rest / math.ceil(rest / longest)
@@ -45,11 +49,12 @@ def advance_hard(m, touch, number, dt, law, steps_per_swing):
             meeting = max(_time_to_meet(m, touch, number, rest, lies), _LEAST * dt)
             if meeting < span:
                 span, meetings = meeting, meetings + 1
-        drift_involved(m, 0.5 * span)
-        clear_loads(m)
-        pull_springs(m, touch.springs)
-        foresee(m, span)
-        heat, by_driven = kick_involved(m, span)
+        drift_involved(m, every, 0.5 * span)
+        clear_loads(m, every)
+        pull_springs(m, touch, every)
+        for b in every:
+            foresee(m, b, span)
+        heat, by_driven = kick_involved(m, every, span)
         lost, work = lost + heat, work + by_driven
         points = points_of(m, touch, number)
         touching = len(points.slot)
@@ -57,7 +62,7 @@ def advance_hard(m, touch, number, dt, law, steps_per_swing):
             gone, done, off = solve(m, touch, points, law, _aim(m, touch, points, lies, span))
             lost, work, left = lost + gone, work + done, max(left, off)
         _note_forces(touch, points, span)
-        drift_involved(m, 0.5 * span)
+        drift_involved(m, every, 0.5 * span)
         rest, cuts = (rest - span if span < rest else 0.0), cuts + 1
     return touching, cuts, lost, work, left
 

@@ -193,9 +193,9 @@ def loads_on(m, b):
 
 
 @kernel
-def clear_loads(m):
-    """Forget the contact loads of all rows, but for what they do to the centres."""
-    for b in range(len(m)):
+def clear_loads(m, rows):
+    """Forget the contact loads of these rows, but for what they do to the centres."""
+    for b in rows:
         for a in range(3):
             m[b, RUSH + a] = m[b, LIGHT] * (m[b, GIVEN + a] + m[b, LOAD + a])
         for k in range(6):
@@ -213,32 +213,31 @@ def alone(m, dt):
 
 
 @kernel
-def drift_involved(m, dt):
-    """Move what is driven and all bodies that may touch something over `dt`, s."""
-    for b in range(len(m)):
+def drift_involved(m, rows, dt):
+    """Move what is driven and the bodies that may touch something over `dt`, s; rows of the table."""
+    for b in rows:
         if m[b, ROLE] == INVOLVED or m[b, ROLE] == DRIVEN:
             drift(m, b, dt)
 
 
 @kernel
-def foresee(m, dt):
-    """Set the MEAN of these bodies and of what is driven for a kick over `dt`, s, by the present loads."""
-    for b in range(len(m)):
-        if m[b, ROLE] == DRIVEN:
-            for a in range(3):
-                m[b, MEAN + a], m[b, MEAN + 3 + a] = m[b, VELOCITY + a], m[b, SPIN + a]
-        elif m[b, ROLE] == INVOLVED:
-            push, turn = answer(m, b, loads_on(m, b))
-            for a in range(3):
-                m[b, MEAN + a] = m[b, VELOCITY + a] + 0.5 * dt * push[a]
-                m[b, MEAN + 3 + a] = m[b, SPIN + a] + 0.5 * dt * turn[a]
+def foresee(m, b, dt):
+    """Set the MEAN of body `b`, or of what is driven, for a kick over `dt`, s, by the present loads."""
+    if m[b, ROLE] == DRIVEN:
+        for a in range(3):
+            m[b, MEAN + a], m[b, MEAN + 3 + a] = m[b, VELOCITY + a], m[b, SPIN + a]
+    elif m[b, ROLE] == INVOLVED:
+        push, turn = answer(m, b, loads_on(m, b))
+        for a in range(3):
+            m[b, MEAN + a] = m[b, VELOCITY + a] + 0.5 * dt * push[a]
+            m[b, MEAN + 3 + a] = m[b, SPIN + a] + 0.5 * dt * turn[a]
 
 
 @kernel
-def kick_involved(m, dt):
+def kick_involved(m, rows, dt):
     """Kick these bodies, their MEAN known; returns (energy dissipated, work on them of what is driven), J."""
     lost, work = 0.0, 0.0
-    for b in range(len(m)):
+    for b in rows:
         for k in range(6):
             lost -= dt * m[b, LOSS + k] * m[b, MEAN + k]
             m[b, TOTAL + k] += dt * (m[b, LOAD + k] - m[b, PULL + k])

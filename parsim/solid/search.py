@@ -1,4 +1,4 @@
-"""Which bodies may touch what within one step, and with which contact elements.
+"""Tables of the pairs that may touch within one step, and of the contact elements with which they may.
 
 Pairs, whole numbers by columns: A, B (rows of the table of bodies; -1 - w for wall w), FEATURE (the direction of the
 normal), FIRST to MIDDLE (slots of the elements of a), MIDDLE to LAST (those of b), LAST itself (the crossing of two
@@ -11,31 +11,27 @@ AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolli
 normal inwards, level (normal . x > level inside), the lowest and highest corner of where they are, and WALL_MATERIAL.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
-from parsim.solid.separation import ROUND_A, ROUND_B, best_feature, between, ramp_of, reach_along
+from parsim.solid.separation import BALLS, ROUND_A, between, ramp_of, reach_along
 from parsim.solid.shapes.forms import Forms
-from parsim.solid.shapes.kernels import along_side, reach, touches_at_one_point
-from parsim.solid.speeds import bound_of_speed
-from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, pose_of, shape_of, three
+from parsim.solid.shapes.kernels import along_side
+from parsim.solid.table import HALF, POSITION, pose_of, shape_of
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
 DEPTH, AREA, POINT, STRETCH, ROLL = 0, 1, 2, 5, 8
 WALL_MATERIAL = 10
-_ROUNDING = 1e-9  # of the widest body
-_MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
 class Touch(NamedTuple):
     """What may touch, and with what: the tables above; first, elements: see `shapes.elements_of`; law: its number;
     pair_law: see `forces.press`; tanks: see `tanks`; forms: see `shapes.forms`; springs: see
-    `ties.Joints`."""
+    `ties.Joints`; first_spring: of each row, and one more."""
 
     first: np.ndarray
     elements: np.ndarray
@@ -49,15 +45,7 @@ class Touch(NamedTuple):
     tanks: np.ndarray
     forms: Forms
     springs: np.ndarray
-
-
-class Reach(NamedTuple):
-    """How far is looked for pairs: period (3,), m; half extents along the axes (b, 3), m; reach, m; 2D or not."""
-
-    period: np.ndarray
-    extent: np.ndarray
-    reach: float
-    planar: bool
+    first_spring: np.ndarray
 
 
 def room_for_pairs(count):
@@ -71,91 +59,12 @@ def room_for_slots(count):
 
 
 @kernel
-def near_pairs(m, touch, period, planar, dt, place, order):
-    """Find the pairs that may touch within `dt`, s, and mark their bodies as involved; (number, reach in m).
-
-    `period` (3,), m, inf where nothing repeats; `place` (nb,): x within the period of the bodies, which are the first
-    rows of the table, and the `order` that sorts it. A number beyond the room for pairs says how much is needed. Sweep
-    along x, then upright boxes, then separating axes. 9 blocks apart: 5 us.
-    """
-    walls = touch.walls
-    count, number = place.size, 0
-    extent, widest = _extents(m, touch.forms, count)
-    far = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
-    near = Reach(period, extent, far, planar)
-    for row in range(count):
-        for step in range(1, count):
-            other, around = row + step, 0.0
-            if other >= count:
-                if period[0] == math.inf:
-                    break
-                other, around = other - count, period[0]
-            along = place[order[other]] + around - place[order[row]]
-            if along > 2.0 * widest + far or along > 0.5 * period[0]:
-                break
-            a, b = min(order[row], order[other]), max(order[row], order[other])
-            number = _add(m, touch, number, a, b, near)
-    for a in range(count):
-        for driven in range(count, len(m)):
-            number = _add(m, touch, number, a, driven, near)
-        for w in range(len(walls)):
-            if m[a, ROLE] > DRIVEN and above(m, touch, a, w) < far:
-                feature = ROUND_A if touches_at_one_point(shape_of(m, a)) else 0
-                number = _note(m, touch, number, a, -1 - w, feature, (0.0, 0.0, 0.0))
-    return number, far
-
-
-@kernel
 def above(m, touch, a, w):
     """Distance of body `a` from wall `w`."""
     walls = touch.walls
     x, y, z = walls[w, 0], walls[w, 1], walls[w, 2]
     centre = m[a, POSITION] * x + m[a, POSITION + 1] * y + m[a, POSITION + 2] * z
     return centre - reach_along(m, touch.forms, a, -x, -y, -z) - walls[w, 3]
-
-
-@kernel
-def _extents(m, forms, count):
-    """(how far all rows reach along the axes, to the farther side, (rows, 3); most along x of the first `count`)."""
-    extent, widest = np.zeros((len(m), 3)), 0.0
-    for b in range(len(m)):
-        for a in range(3):
-            x, y, z = three(m, b, TURN + 3 * a)
-            extent[b, a] = max(reach(forms, b, (x, y, z)), reach(forms, b, (-x, -y, -z)))
-        if b < count:
-            widest = max(widest, extent[b, 0])
-    return extent, widest
-
-
-@kernel
-def _add(m, touch, number, a, b, near):
-    """Note the pair of bodies if they are within reach of each other; the new number of pairs."""
-    period, extent, far, planar = near
-    if m[a, ROLE] <= DRIVEN and m[b, ROLE] <= DRIVEN:
-        return number
-    moved = np.zeros(3)
-    for k in range(3):
-        apart = m[a, POSITION + k] - m[b, POSITION + k]
-        if extent[b, k] < 0.5 * period[k] < math.inf:  # what is wider has no image beside itself
-            moved[k] = period[k] * np.round(apart / period[k])
-        if abs(apart - moved[k]) > extent[a, k] + extent[b, k] + far:
-            return number
-    by = (moved[0], moved[1], moved[2])
-    feature, distance = best_feature(m, touch.forms, a, b, by, planar)
-    return _note(m, touch, number, a, b, feature, by) if distance <= far else number
-
-
-@kernel
-def _note(m, touch, number, a, b, feature, by):
-    pairs, shift = touch.pairs, touch.shift
-    for body in (a, b):
-        if body >= 0 and m[body, ROLE] == ALONE:
-            m[body, ROLE] = INVOLVED
-    if number < len(pairs):
-        pairs[number, A], pairs[number, B], pairs[number, FEATURE] = a, b, feature
-        pairs[number, KEY] = a * (len(m) + 6) + b + 6
-        shift[number, 0], shift[number, 1], shift[number, 2] = by
-    return number + 1
 
 
 def sort_pairs(pairs, shift, number):
@@ -174,7 +83,7 @@ def fill_slots(m, touch, number, reach):
     pairs, slot = touch.pairs, 0
     for c in range(number):
         a, b = pairs[c, A], pairs[c, B]
-        own, spot = _watched(m, touch, a), ROUND_A <= pairs[c, FEATURE] <= ROUND_B
+        own, spot = _watched(m, touch, a), ROUND_A <= pairs[c, FEATURE] <= BALLS
         pairs[c, FIRST] = slot
         if not spot:
             slot = _list(m, touch, c, (a, b, 0), reach, slot)

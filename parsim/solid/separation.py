@@ -11,10 +11,11 @@ from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.cores import between_cores
 from parsim.solid.shapes.kernels import LATERAL, distance, is_box, reach, touches_at_one_point
-from parsim.solid.table import CELL, HALF, POSITION, TURN, shape_of, three, turn_at
+from parsim.solid.table import CELL, HALF, POSITION, TURN, is_tied, shape_of, three, turn_at
 
 ROUND_A, ROUND_B = 15, 16  # features: a, or b, is round and touches the nearest point of the other
-CORES = 17  # the direction between the cores
+BALLS = 17  # both are round and free to move and turn, or one is, on a wall: through their centres
+CORES = 18  # the direction between the cores
 _EDGE_BIAS = 0.05  # an edge-edge normal must be better than a face normal by this share
 _PARALLEL = 0.05  # sine of the angle below which edges are parallel: their normal would turn 20 times as fast as they
 
@@ -63,6 +64,8 @@ def separation(m, forms, a, b, shift, feature):
 
     Edges that have turned parallel since they were chosen, within a step, no longer cross: infinitely far apart.
     """
+    if feature == BALLS:
+        return gap_of_balls(m, a, b, shift)
     if feature == ROUND_A:
         return gap_to_round(m, forms, a, b, shift)
     if feature == ROUND_B:
@@ -83,6 +86,16 @@ def separation(m, forms, a, b, shift, feature):
 
 
 @kernel
+def gap_of_balls(m, a, b, shift):
+    """(distance of ball a from ball b moved by `shift`, unit normal from b to a)."""
+    x, y, z = between(m, a, b, shift)
+    far = math.sqrt(x * x + y * y + z * z)
+    if far == 0.0:
+        return -m[a, HALF] - m[b, HALF], 0.0, 0.0, 1.0
+    return far - m[a, HALF] - m[b, HALF], x / far, y / far, z / far
+
+
+@kernel
 def gap_to_round(m, forms, a, b, shift):
     """(distance of the round body a from the surface of b moved by `shift`, unit normal from b to a)."""
     x, y, z = between(m, a, b, shift)
@@ -99,6 +112,8 @@ def best_feature(m, forms, a, b, shift, planar):
     In 2D only the axes in the plane. Edge pairs must win clearly, as they tie with faces where boxes lie flat. Where
     one is round, the direction is that to the nearest point of the other; where one is no box, that between cores.
     """
+    if is_ball(m, a) and is_ball(m, b):
+        return BALLS, gap_of_balls(m, a, b, shift)[0]
     for body, feature in ((a, ROUND_A), (b, ROUND_B)):
         if touches_at_one_point(shape_of(m, body)):
             return feature, separation(m, forms, a, b, shift, feature)[0]
@@ -119,6 +134,12 @@ def best_feature(m, forms, a, b, shift, planar):
         if needed < apart < math.inf:
             best, farthest, needed = feature, apart, apart
     return best, farthest
+
+
+@kernel
+def is_ball(m, b):
+    """Whether body `b` is round, and no joint keeps it from moving."""
+    return touches_at_one_point(shape_of(m, b)) and not is_tied(m, b)
 
 
 @kernel

@@ -3,7 +3,7 @@
 from parsim.geometry.rotation import to_global
 from parsim.machine.jit import kernel
 from parsim.solid.speeds import length, speed_of
-from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, POSITION, PULL, SPIN, VELOCITY, three, turn_at
+from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, POSITION, PULL, SPIN, SWING, VELOCITY, three, turn_at
 
 BODY, AT, FROM, TO, STIFFNESS, DAMPING, LENGTH, SLACK = 0, 1, 4, 7, 10, 11, 12, 13
 _NONE, _X, _Y, _Z = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -42,23 +42,29 @@ def _away(m, springs, k):
 
 
 @kernel
-def pull_springs(m, springs):
-    """Add the loads of all springs to those of their bodies."""
-    for k in range(len(springs)):
-        b, ((x, y, z), e, more) = int(springs[k, BODY]), _stretched(m, springs, k)
-        (p, q, r), v = three(m, b, SPIN), three(m, b, VELOCITY)
-        away = (v[0] + q * z - r * y) * e[0] + (v[1] + r * x - p * z) * e[1] + (v[2] + p * y - q * x) * e[2]
-        force, drag = -springs[k, STIFFNESS] * more, -springs[k, DAMPING] * away
-        if springs[k, SLACK] > 0.0:
-            drag = min(drag, -force)  # a rope does not push
-        arm = (y * e[2] - z * e[1], z * e[0] - x * e[2], x * e[1] - y * e[0])
-        for a in range(3):
-            m[b, LOAD + a] += (force + drag) * e[a]
-            m[b, PULL + a] += (force + drag) * e[a]
-            m[b, LOSS + a] += drag * e[a]
-            m[b, LOAD + 3 + a] += (force + drag) * arm[a]
-            m[b, PULL + 3 + a] += (force + drag) * arm[a]
-            m[b, LOSS + 3 + a] += drag * arm[a]
+def pull_springs(m, touch, rows):
+    """Add the loads of the springs of these rows to those of the bodies."""
+    for b in rows:
+        for k in range(touch.first_spring[b], touch.first_spring[b + 1]):
+            _pull(m, touch.springs, b, k)
+
+
+@kernel
+def _pull(m, springs, b, k):
+    (x, y, z), e, more = _stretched(m, springs, k)
+    (p, q, r), v = three(m, b, SPIN), three(m, b, VELOCITY)
+    away = (v[0] + q * z - r * y) * e[0] + (v[1] + r * x - p * z) * e[1] + (v[2] + p * y - q * x) * e[2]
+    force, drag = -springs[k, STIFFNESS] * more, -springs[k, DAMPING] * away
+    if springs[k, SLACK] > 0.0:
+        drag = min(drag, -force)  # a rope does not push
+    arm = (y * e[2] - z * e[1], z * e[0] - x * e[2], x * e[1] - y * e[0])
+    for a in range(3):
+        m[b, LOAD + a] += (force + drag) * e[a]
+        m[b, PULL + a] += (force + drag) * e[a]
+        m[b, LOSS + a] += drag * e[a]
+        m[b, LOAD + 3 + a] += (force + drag) * arm[a]
+        m[b, PULL + 3 + a] += (force + drag) * arm[a]
+        m[b, LOSS + 3 + a] += drag * arm[a]
 
 
 @kernel
@@ -72,28 +78,26 @@ def held_by_springs(m, springs):
 
 
 @kernel
-def rate_of_springs(m, springs, dt):
-    """Bound of the square of the largest angular frequency of bodies on springs, 1/s2, within `dt`, s.
+def rate_springs(m, touch, dt):
+    """Set SWING of all bodies, for the next `dt`, s.
 
-    Those of a body add up. A spring acts along itself with its stiffness and across with tension over length, as a
+    Springs of a body add up. One acts along itself with its stiffness and across with tension over length, as a
     pendulum does; it turns its body by tension times arm. The largest counts, so that the bound of what is not pressed
     together does not change with the pose: sub-steps that follow the swing make or take energy. A rope counts if it
     may become taut.
     """
-    largest = 0.0
-    for k in range(len(springs)):
-        b, total, damped = int(springs[k, BODY]), 0.0, 0.0
-        turning = max(m[b, INVERSE], m[b, INVERSE + 1], m[b, INVERSE + 2])
-        for j in range(len(springs)):
-            if int(springs[j, BODY]) == b and _may_pull(m, springs, j, dt):
-                arm, _, away = _away(m, springs, j)
-                tension, arm = abs(away) if springs[j, SLACK] == 0.0 else max(away, 0.0), length(arm)
-                across = min(tension / max(away + springs[j, LENGTH], 1e-300), _STEEPEST)
+    springs, first = touch.springs, touch.first_spring
+    for b in range(len(m)):
+        total, damped, turning = 0.0, 0.0, max(m[b, INVERSE], m[b, INVERSE + 1], m[b, INVERSE + 2])
+        for k in range(first[b], first[b + 1]):
+            if _may_pull(m, springs, k, dt):
+                arm, _, away = _away(m, springs, k)
+                tension, arm = abs(away) if springs[k, SLACK] == 0.0 else max(away, 0.0), length(arm)
+                across = min(tension / max(away + springs[k, LENGTH], 1e-300), _STEEPEST)
                 soft = m[b, LIGHT] + arm * arm * turning
-                total += springs[j, STIFFNESS] * max(soft * max(across, 1.0), tension * arm * turning)
-                damped += springs[j, DAMPING] * soft
-        largest = max(largest, total + damped * damped)
-    return largest
+                total += springs[k, STIFFNESS] * max(soft * max(across, 1.0), tension * arm * turning)
+                damped += springs[k, DAMPING] * soft
+        m[b, SWING] = total + damped * damped
 
 
 @kernel

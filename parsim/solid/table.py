@@ -5,21 +5,25 @@ One array instead of many: a kernel then passes a table of bodies on to the next
 
 from parsim.machine.jit import kernel
 
-POSITION, QUATERNION, VELOCITY = 0, 3, 7
-MOMENTUM, SPIN = 10, 13  # angular, both in global axes
-TURN = 16  # rotation matrix by rows, 9
-GIVEN, LOAD, LOSS, TOTAL = 25, 31, 37, 43  # force and torque: constant; of contacts; their lossy part; their impulse
-HALF, CELL = 49, 52  # half edges of the box around it; distances of contact elements
-INERTIA, INVERSE, LIGHT = 55, 58, 61  # principal moments; 1 / moments; 1 / mass; the inverses 0 for what is held
-ROLE, MATERIAL = 62, 63
-MEAN = 64  # of velocity and spin before and after a kick
-RADIUS = 70  # of the ball around it, in a plane of the disc
-SHAPE = 71  # number of its shape
-FREE = 72  # 1 where it may move along x, y, z and turn about them
-ROD = 78  # pivot and length of the rod that it hangs by, 0 if by none
-PULL, TIED = 82, 88  # force and torque of its springs to the world; their impulse
-RUSH = 94  # acceleration of its centre at the kick before
-WIDTH = 97
+# what every pair asks for comes first and lies together: a table of many bodies does not fit into the cache
+POSITION, VELOCITY, SPIN = 0, 3, 6  # spin in global axes
+LIGHT, HALF = 9, 10  # 1 / mass, 0 for what is held; half edges of the box around it
+ROLE, MATERIAL = 13, 14
+RUSH = 15  # acceleration of its centre at the kick before
+LOAD, LOSS = 18, 24  # force and torque of contacts and springs, their lossy part
+MEAN = 30  # of velocity and spin before and after a kick
+GIVEN, TOTAL = 36, 42  # force and torque that are constant; impulse of contacts
+STIRRED = 48  # round in which its loads last changed, as contacts are kept from giving energy
+QUATERNION, TURN = 49, 53  # TURN: rotation matrix by rows, 9
+MOMENTUM = 62  # angular, in global axes
+INERTIA, INVERSE = 65, 68  # principal moments; 1 / moments, 0 for what is held
+CELL = 71  # distances of contact elements
+RADIUS, SHAPE = 74, 75  # of the ball around it, in a plane of the disc; number of its shape
+FREE = 76  # 1 where it may move along x, y, z and turn about them
+ROD = 82  # pivot and length of the rod that it hangs by, 0 if by none
+PULL, TIED = 86, 92  # force and torque of its springs to the world; their impulse
+RATE, SWING = 98, 101  # bounds of the squares of its frequencies, 1/s2: along the axes by contacts; by its springs
+WIDTH = 102
 
 HELD, DRIVEN, ALONE, INVOLVED = 0, 1, 2, 3  # roles: at rest; moves as given; free, touches nothing now; may touch
 

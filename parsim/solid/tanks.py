@@ -8,11 +8,12 @@ its forces become smaller. Kinetic energy and tanks together thus never grow, bu
 the geometry and the sub-step. Such accounts are known from haptic interfaces (Hannaford & Ryu 2002,
 doi 10.1109/70.988969).
 
-Columns of `tanks` (n, 23), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
-only dissipate over several kicks; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE, SHEAR, that of its
-friction springs; WORK of the pair's forces in this kick, J; LOADS and LOSSES (6 each), force and torque about the
-centre of body a, N and N m, and their dissipating part; SHARE of its stiffness that a narrow contact has; BEND, RADIUS,
-m, and DEEP, m, of what touches: how it is curved (`laws.law.FLAT` and so on), and how deep it is.
+Columns of `tanks` (n, 24), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
+only dissipate over several kicks; SHEAR, J, that of its friction springs, and LAPSE, s, by which their stretch is
+behind the pose; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE; WORK of the pair's forces in this kick,
+J; LOADS and LOSSES (6 each), force and torque about the centre of body a, N and N m, and their dissipating part; SHARE
+of its stiffness that a narrow contact has; BEND, RADIUS, m, and DEEP, m, of what touches: how it is curved
+(`laws.law.FLAT` and so on), and how deep it is.
 """
 
 import math
@@ -24,30 +25,41 @@ from parsim.machine.jit import kernel
 from parsim.solid.motion import answer, foresee
 from parsim.solid.search import FIRST, KEY, LAST, ROLL, STRETCH, A, B
 from parsim.solid.separation import between
-from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, MEAN, is_tied, three, turn_at
+from parsim.solid.table import INVERSE, INVOLVED, LIGHT, LOAD, LOSS, MEAN, ROLE, STIRRED, is_tied, three, turn_at
 
-STORED, LOST, BEFORE, NOW, SHEAR_BEFORE, SHEAR, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 13
-SHARE, BEND, RADIUS, DEEP = 19, 20, 21, 22
+STORED, LOST, SHEAR, LAPSE, BEFORE, NOW, SHEAR_BEFORE, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 8, 14
+SHARE, BEND, RADIUS, DEEP = 20, 21, 22, 23
+KEPT = 4  # columns, the first, that last from step to step
 _ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
 _ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
 def room_for_tanks(count):
     """Empty tanks of `count` pairs."""
-    return np.zeros((count, 23))
+    return np.zeros((count, 24))
 
 
 @kernel
 def recall_tanks(touch, number, key, stored):
-    """Empty the first `number` tanks but for what is `stored` (n, 2), STORED and LOST, under their keys, in order."""
+    """Empty the first `number` tanks but for what is `stored` (n, KEPT) under their keys, in order.
+
+    Returns the energy, J, in friction springs of pairs that are no more.
+    """
     pairs, tanks = touch.pairs, touch.tanks
-    old = 0
+    old, gone = 0, 0.0
     for c in range(number):
         tanks[c, :] = 0.0
         while old < key.size and key[old] < pairs[c, KEY]:
+            gone += stored[old, SHEAR]
             old += 1
         if old < key.size and key[old] == pairs[c, KEY]:
-            tanks[c, STORED], tanks[c, LOST] = stored[old, 0], stored[old, 1]
+            for k in range(KEPT):
+                tanks[c, k] = stored[old, k]
+            old += 1
+    while old < key.size:
+        gone += stored[old, SHEAR]
+        old += 1
+    return gone
 
 
 @kernel
@@ -62,31 +74,44 @@ def load_pair(m, touch, c, potential, shear, loads, losses):
 
 
 @kernel
-def restrain(m, touch, number, span):
+def restrain(m, touch, which, rows, span):
     """Make loads smaller where in the coming kick of `span`, s, they would take more from a tank than it holds.
 
-    Leaves the MEAN of all bodies; returns the energy in friction springs, J. 0.3 us a pair that touches, where nothing
-    is too large.
+    Leaves the MEAN of all bodies; returns the energy in friction springs, J. `which`: pairs, of these rows. 0.1 us a
+    pair that touches, where nothing is too large.
     """
-    tanks = touch.tanks
-    for c in range(number):
+    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
+    for c in which:
         tanks[c, STORED] = min(tanks[c, STORED], tanks[c, BEFORE] + tanks[c, NOW])
+    for b in rows:
+        m[b, STIRRED] = 0.0
     rounds, over = 0, True
     while over:
         over = False
-        foresee(m, span)
-        for c in range(number):
-            if tanks[c, NOW] == 0.0:
+        for b in rows:
+            if m[b, STIRRED] == rounds:
+                foresee(m, b, span)
+        for c in which:
+            if tanks[c, NOW] == 0.0 or not _stirred(m, pairs[c, A], pairs[c, B], rounds):
                 continue
-            tanks[c, WORK], own = _work(m, touch, c, LOADS, span)
+            tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
             if tanks[c, WORK] > tanks[c, STORED] + _ROUNDING * own:
                 over, share = True, 0.0
                 if rounds < _ROUNDS:
                     share = _share(tanks[c, WORK], own, tanks[c, STORED])
                 _apply(m, touch, c, share - 1.0)
                 _slacken(touch, c, share)
+                for b in (pairs[c, A], pairs[c, B]):
+                    if b >= 0 and m[b, ROLE] == INVOLVED:
+                        m[b, STIRRED] = rounds + 1.0
         rounds += 1
-    return _account(m, touch, number, span)
+    return _account(m, touch, which, span)
+
+
+@kernel
+def _stirred(m, a, b, rounds):
+    """Whether the loads of a pair's bodies, or what they do, have changed since the round before."""
+    return rounds == 0 or m[a, STIRRED] == rounds or (b >= 0 and m[b, STIRRED] == rounds)
 
 
 @kernel
@@ -102,14 +127,14 @@ def _slacken(touch, c, share):
 
 
 @kernel
-def _account(m, touch, number, span):
+def _account(m, touch, which, span):
     """Fill or drain the tanks by what the loads do in this kick; the energy in friction springs, J."""
-    tanks = touch.tanks
+    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
     shear = 0.0
-    for c in range(number):
+    for c in which:
         if tanks[c, NOW] > 0.0:
             room = tanks[c, BEFORE] + tanks[c, NOW]
-            lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, touch, c, LOSSES, span)[0]
+            lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, pairs, shift, tanks, c, LOSSES, span)[0]
             lost = max(lost, -tanks[c, LOST])
             tanks[c, LOST] = min(tanks[c, LOST] + lost, room)
             tanks[c, STORED] = max(tanks[c, STORED] - tanks[c, WORK] - lost, 0.0)
@@ -126,9 +151,8 @@ def _share(work, own, stored):
 
 
 @kernel
-def _work(m, touch, c, at, span):
+def _work(m, pairs, shift, tanks, c, at, span):
     """(work of the loads of pair `c` in a kick, what of it they would do on bodies at rest), J."""
-    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
     a, b, f = pairs[c, A], pairs[c, B], _six(tanks, c, at)
     power, answer = _power(m, a, f)
     if b >= 0:

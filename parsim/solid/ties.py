@@ -13,9 +13,9 @@ from parsim.solid.joints.spring import SpringTable
 
 class Joints(NamedTuple):
     """Of nb bodies: free (nb, 6), 1 where it may move along x, y, z and turn about them, else 0; rod (nb, 4), pivot and
-    length, m, of what it hangs by, 0 where it does not; springs (k, 14): body, point in its frame, both ends of the
-    line, m, stiffness, N/m, damping, N s/m, length, m, and 1 where it only pulls; driven: (body, joint, place (3,),
-    quaternion (4,) at the start)."""
+    length, m, of what it hangs by, 0 where it does not; springs (k, 14) in order of bodies: body, point in its frame,
+    both ends of the line, m, stiffness, N/m, damping, N s/m, length, m, and 1 where it only pulls; driven: (body,
+    joint, place (3,), quaternion (4,) at the start)."""
 
     free: np.ndarray
     rod: np.ndarray
@@ -68,4 +68,5 @@ def joints_of(tables, names, position, quaternion, frames):
             springs.append([b, *(frames[b].T @ at), *rest])
         else:
             driven.append((b, table, position[b].copy(), quaternion[b].copy()))
-    return Joints(free, rod, np.array(springs, float).reshape(-1, 14), tuple(driven))
+    springs = np.array(sorted(springs, key=lambda row: row[0]), float).reshape(-1, 14)
+    return Joints(free, rod, springs, tuple(driven))

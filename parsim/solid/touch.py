@@ -8,13 +8,23 @@ from parsim.solid.cores import between_cores
 from parsim.solid.curves import curve_of, radius_of, spot_area
 from parsim.solid.laws.law import FLAT, LINE
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, INDEX, LAST, MIDDLE, POINT, A, B, above
-from parsim.solid.separation import CORES, ROUND_A, ROUND_B, between, edge_crossing, overlap_share, ramp_of, separation
+from parsim.solid.separation import (
+    BALLS,
+    CORES,
+    ROUND_A,
+    ROUND_B,
+    between,
+    edge_crossing,
+    overlap_share,
+    ramp_of,
+    separation,
+)
 from parsim.solid.shapes.kernels import along_side, depth, is_box, on_side, touches_along_a_line
 from parsim.solid.table import CELL, HALF, POSITION, pose_of, shape_of, three
 from parsim.solid.tanks import BEND, DEEP, RADIUS, SHARE
 
 _NOWHERE = (0.0, 0.0, 0.0)
-_DEEPEST = 0.1  # of its radius, that something round is expected to be pressed in; its stiffness grows with the depth
+EXPECTED = 0.1  # of its radius, that something round is expected to be pressed in; its stiffness grows with the depth
 
 
 @kernel
@@ -31,7 +41,7 @@ def normal_of(m, touch, c):
 @kernel
 def touches_round(touch, c):
     """Whether pair `c` touches at one point of something round."""
-    return touch.pairs[c, FEATURE] == ROUND_A or touch.pairs[c, FEATURE] == ROUND_B
+    return ROUND_A <= touch.pairs[c, FEATURE] <= BALLS
 
 
 @kernel
@@ -138,7 +148,7 @@ def _against_plane(m, touch, which, by, n, level, curve):
         (x, y, z), area = _watched(m, touch, body, slot, (-u, -v, -w))
         deep = -(height + u * x + v * y + w * z)
         if marks[slot, INDEX] < 0:
-            area *= _of_side(m, body, curve, min(deep, _DEEPEST * curve[1]) if level > 1e8 else deep)
+            area *= _of_side(m, body, curve, min(deep, EXPECTED * curve[1]) if level > 1e8 else deep)
         elif curve[0] != FLAT:
             area = 0.0
         x, y, z = to_global(t, x, y, z)
@@ -248,7 +258,7 @@ def show(m, touch, c, n, apart):
     a, b, by, far = pairs[c, A], pairs[c, B], three(touch.shift, c, 0), 1e9
     first, middle, last = pairs[c, FIRST], pairs[c, MIDDLE], pairs[c, LAST]
     tanks[c, BEND], tanks[c, RADIUS] = curve_of(m, touch.forms, a, b, n)
-    tanks[c, DEEP] = max(_DEEPEST * tanks[c, RADIUS], -apart)
+    tanks[c, DEEP] = max(EXPECTED * tanks[c, RADIUS], -apart)
     if touches_round(touch, c):
         _spot(m, touch, c, n)
         return slots[last, AREA]
