@@ -103,7 +103,7 @@ def _outside(case, body):
         if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
             yield (
                 f"position = {list(body.position)}: outside the box, reaches from {name} = {low[axis]:.6g} to "
-                f"{high[axis]:.6g}; allowed {least!r} to {most!r}"
+                f"{high[axis]:.6g}; allowed {least!r} to {most!r}{body.shape.hint(case.box.size)}"
             )
 
 

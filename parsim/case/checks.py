@@ -101,7 +101,8 @@ def _floated(case, body):
     height = body.shape.afloat(density / case.water.density, place.axes[2])
     draught = place.along(np.array([0.0, 0.0, -1.0])) - height
     if draught > level - bottom:
-        raise ValueError(f"draught {draught:.6g} m is more than the depth of water there, {level - bottom:.6g} m")
+        text = f"draught {draught:.6g} m is more than the depth of water there, {level - bottom:.6g} m"
+        raise ValueError(text + body.shape.hint(case.box.size))
     return body.model_copy(update={"position": (x, y, float(level + height))})
 
 

@@ -16,12 +16,22 @@ def read(path, inside=()):
     if path.resolve() in inside:
         raise InputError(f"{path}: extends = loops: " + " -> ".join(p.name for p in (*inside, path)))
     data = _parsed(path)
+    _locate(data, path.parent)
     parent = data.pop("extends", None)
     if parent is None:
         return data
     if not isinstance(parent, str) or "\0" in parent:
         raise InputError(f"{path}: extends = {parent!r}: must be the path of a case file, as text")
     return _merged(read(path.parent / parent, (*inside, path.resolve())), data)
+
+
+def _locate(data, folder):
+    """Make the paths of files that bodies name whole: they count from where the case is."""
+    bodies = data.get("bodies")
+    for body in bodies if isinstance(bodies, list) else ():
+        shape = body.get("shape") if isinstance(body, dict) else None
+        if isinstance(shape, dict) and isinstance(shape.get("file"), str):
+            shape["file"] = str((folder / shape["file"]).resolve())
 
 
 def _parsed(path):

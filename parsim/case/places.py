@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from parsim.solid.shapes import BoxShape, SphereShape
+from parsim.solid.shapes import BoxShape, MeshShape, SphereShape
 from parsim.solid.shapes.box import distance
 
 _WAYS, _ROUNDS = 64, 12  # directions tried at first, and around the best of them
@@ -58,8 +58,9 @@ def rotation(angles):
 
 def of_body(body):
     """The place that a body of a case takes."""
-    w, _, _, z = body.shape.turn  # shapes are turned about their z axis alone
-    own = rotation((0.0, 0.0, np.degrees(2.0 * np.arctan2(z, w))))
+    w, *v = body.shape.turn
+    cross = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    own = np.eye(3) + 2.0 * (w * cross + cross @ cross)
     return Place(np.array(body.position), rotation(body.angles) @ own, body.shape)
 
 
@@ -78,6 +79,8 @@ def upright(low, high):
 def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     """Least depth, m, by which `first` enters `second` moved by `shift`; 0 or less when they are apart or touch."""
     between = second.centre + np.asarray(shift) - first.centre
+    if MeshShape in (type(first.shape), type(second.shape)):
+        return _deepest(first, second, between)
     kinds = [type(place.shape) for place in (first, second)]
     if SphereShape in kinds:
         ball, other, way = (first, second, -between) if kinds[0] is SphereShape else (second, first, between)
@@ -89,6 +92,15 @@ def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     elif kinds == [BoxShape] * 2:
         return _overlap_of_boxes(first, second, between)
     return -_separation(first, second, between)
+
+
+def _deepest(first, second, between):
+    """How deep any point of one body's surface lies in the other, m."""
+    deep = []
+    for one, other, way in ((first, second, between), (second, first, -between)):
+        points = one.shape.surface()[0] if one.shape.ROUND else one.shape.elements(False)[0][:, :3]
+        deep.append(-other.shape.away((points @ one.axes.T - way) @ other.axes).min())
+    return float(max(deep)) + first.grown_by + second.grown_by
 
 
 def _overlap_of_boxes(first, second, between):

@@ -39,7 +39,7 @@ def press_balls(m, touch, which, lapse, span):
         slot, ab = slots[pairs[c, LAST]], (pairs[c, A], pairs[c, B])
         age = lapse + tanks[c, LAPSE] if span > 0.0 else 0.0
         if not marks[pairs[c, LAST], TOUCHING]:
-            slot[STRETCH:], marks[pairs[c, LAST], TOUCHING], age = 0.0, 1, 0.0
+            slot[STRETCH : ROLL + 3], marks[pairs[c, LAST], TOUCHING], age = 0.0, 1, 0.0
         law = _law(m, ab, -apart, touch.walls, touch.pair_law, touch.law, touch.forms.planar)
         _push(m, slot, tanks[c], ab, n, law, (-apart, age, span))
     return touching

@@ -15,6 +15,7 @@ from parsim.solid.nearby import near_pairs
 from parsim.solid.search import (
     ELEMENT,
     KEY,
+    NORMAL,
     SLOT_KEY,
     STRETCH,
     TOUCHING,
@@ -229,7 +230,7 @@ class Contacts:
         self._pair, self._stored = self._pairs[at, KEY], self._tanks[at, :KEPT]
         at = np.flatnonzero(self._marks[:count, TOUCHING])
         self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]
-        self._stretch = self._slots[at, STRETCH:]
+        self._stretch = self._slots[at, STRETCH:NORMAL]
 
 
 def _pose(bodies):

@@ -6,10 +6,25 @@ from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
 from parsim.solid.balls import press_balls
 from parsim.solid.element import friction_force, normal_force, rolling_torque
+from parsim.solid.hollows import normal_by_elements
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.motion import answer, clear_loads
-from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
-from parsim.solid.separation import BALLS, between
+from parsim.solid.search import (
+    AREA,
+    DEPTH,
+    FEATURE,
+    FIRST,
+    LAST,
+    NORMAL,
+    POINT,
+    ROLL,
+    STRETCH,
+    TOUCHING,
+    WALL_MATERIAL,
+    A,
+    B,
+)
+from parsim.solid.separation import BALLS, FIELD, between
 from parsim.solid.speeds import speed_of
 from parsim.solid.springs import pull_springs
 from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, is_tied, three, turn_at
@@ -105,13 +120,16 @@ def _push(m, touch, c, n, total, times):
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
     _, damping, mu, _, rolling = coefficients(m, touch, a, b)
     rigid, held, shear = hardness(m, touch, c, total)
+    own = pairs[c, FEATURE] == FIELD
+    if own:
+        n = normal_by_elements(slots, first, last, n)
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * rigid / total * (0.5 / held))
     motion, light = relative_motion(m, a, b, by), m[a, LIGHT] + (m[b, LIGHT] if b >= 0 else 0.0)
     springs = rigid * _pressed_in(slots, first, last) - _along(touch.tanks, c, n)
     dashpot /= 1.0 + 0.5 * times[1] * dashpot * total / effective
     ahead = times[0], 0.5 * times[1] * (_parting(m, a, b, n) + light * springs)
-    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS])
+    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], own)
     touching, sheared, pressed, force, loss = _sum(touch, first, last, n, motion, ahead, law)
     load_pair(m, touch, c, sheared + pressed, sheared, force, loss)
     return touching
@@ -152,7 +170,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
     speed that the pair will have gained by the middle of the kick, m/s.
     """
     marks, slots, (lapse, sooner) = touch.marks, touch.slots, ahead
-    rigid, dashpot, mu, held, shear, (rolling, radius) = law
+    rigid, dashpot, mu, held, shear, (rolling, radius, own) = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(shear) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -161,6 +179,8 @@ def _sum(touch, first, last, n, motion, ahead, law):
         if depth <= 0.0:
             marks[slot, TOUCHING] = 0
             continue
+        if own:
+            n = three(slots, slot, NORMAL)
         x, y, z = slots[slot, POINT] - ox, slots[slot, POINT + 1] - oy, slots[slot, POINT + 2] - oz
         v = velocity_at(motion, x, y, z)
         normal, elastic = normal_force(rigid, dashpot, area, depth, v[0] * n[0] + v[1] * n[1] + v[2] * n[2] + sooner)

@@ -15,7 +15,8 @@ from parsim.solid.forces import coefficients
 from parsim.solid.impulses import solve, velocity_of
 from parsim.solid.motion import alone, clear_loads, drift_involved, foresee, kick_involved
 from parsim.solid.points import points_of
-from parsim.solid.search import STRETCH, TOUCHING, A, B
+from parsim.solid.search import FEATURE, STRETCH, TOUCHING, A, B
+from parsim.solid.separation import FIELD
 from parsim.solid.shapes.kernels import touches_at_one_point
 from parsim.solid.springs import pull_springs, rate_springs
 from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SPIN, SWING, VELOCITY, shape_of, three
@@ -133,6 +134,8 @@ def _time_to_meet(m, touch, number, rest, lies):
         if b >= 0:
             other, more = _closing(m, b, (x, y, z))
             speed, gain = speed + other, gain + more
+        if pairs[c, FEATURE] == FIELD:
+            continue  # how far a mesh is from what lies in its hollows is not known: it meets at the ends of steps
         if apart <= 0.0:
             hit = hit or speed > lies
             continue

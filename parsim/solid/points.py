@@ -7,7 +7,8 @@ import numpy as np
 
 from parsim.machine.jit import kernel
 from parsim.solid.motion import answer
-from parsim.solid.search import DEPTH, FIRST, LAST, POINT, A, B
+from parsim.solid.search import DEPTH, FEATURE, FIRST, LAST, NORMAL, POINT, A, B
+from parsim.solid.separation import FIELD
 from parsim.solid.table import POSITION, three
 from parsim.solid.touch import measure, normal_of
 
@@ -53,6 +54,8 @@ def points_of(m, touch, number):
         n, known = (0.0, 0.0, 0.0), False
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
+                if touch.pairs[c, FEATURE] == FIELD:
+                    n, known = three(slots, slot, NORMAL), True
                 if not known:
                     _, x, y, z = normal_of(m, touch, c)
                     n, known = (x, y, z), True

@@ -7,8 +7,9 @@ to its periodic image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
 INDEX (its row in the table of elements; -1: none, -2 - k: point k along the curved side), TOUCHING; `slots`: DEPTH, m,
-AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolling friction. Walls, rows of eleven:
-normal inwards, level (normal . x > level inside), the lowest and highest corner of where they are, and WALL_MATERIAL.
+AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolling friction, NORMAL where one is a mesh.
+Walls, rows of eleven: normal inwards, level (normal . x > level inside), the lowest and highest corner of where they
+are, and WALL_MATERIAL.
 """
 
 from typing import NamedTuple
@@ -24,7 +25,7 @@ from parsim.solid.table import HALF, POSITION, pose_of, shape_of
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
-DEPTH, AREA, POINT, STRETCH, ROLL = 0, 1, 2, 5, 8
+DEPTH, AREA, POINT, STRETCH, ROLL, NORMAL = 0, 1, 2, 5, 8, 11
 WALL_MATERIAL = 10
 
 
@@ -55,7 +56,7 @@ def room_for_pairs(count):
 
 def room_for_slots(count):
     """Empty tables of marks and slots."""
-    return np.zeros((count, 4), np.int64), np.zeros((count, 11))
+    return np.zeros((count, 4), np.int64), np.zeros((count, 14))
 
 
 @kernel
@@ -108,7 +109,7 @@ def _mark(touch, slot, key, element, index):
     marks, slots = touch.marks, touch.slots
     if slot < len(marks):
         marks[slot, SLOT_KEY], marks[slot, ELEMENT], marks[slot, INDEX], marks[slot, TOUCHING] = key, element, index, 0
-        for k in range(11):
+        for k in range(14):
             slots[slot, k] = 0.0
     return slot + 1
 

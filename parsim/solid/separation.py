@@ -10,12 +10,13 @@ import math
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.cores import between_cores
-from parsim.solid.shapes.kernels import LATERAL, distance, is_box, reach, touches_at_one_point
+from parsim.solid.shapes.kernels import LATERAL, distance, is_box, is_mesh, reach, touches_at_one_point
 from parsim.solid.table import CELL, HALF, POSITION, TURN, is_tied, shape_of, three, turn_at
 
 ROUND_A, ROUND_B = 15, 16  # features: a, or b, is round and touches the nearest point of the other
 BALLS = 17  # both are round and free to move and turn, or one is, on a wall: through their centres
 CORES = 18  # the direction between the cores
+FIELD = 19  # one is a mesh: each element has the normal of what it is in
 _EDGE_BIAS = 0.05  # an edge-edge normal must be better than a face normal by this share
 _PARALLEL = 0.05  # sine of the angle below which edges are parallel: their normal would turn 20 times as fast as they
 
@@ -71,6 +72,8 @@ def separation(m, forms, a, b, shift, feature):
     if feature == ROUND_B:
         apart, x, y, z = gap_to_round(m, forms, b, a, (-shift[0], -shift[1], -shift[2]))
         return apart, -x, -y, -z
+    if feature == FIELD:
+        return _between_boxes(m, forms, a, b, shift)
     dx, dy, dz = between(m, a, b, shift)
     if feature == CORES:
         x, y, z = between_cores(m, forms, a, b, (dx, dy, dz))[0]
@@ -117,6 +120,8 @@ def best_feature(m, forms, a, b, shift, planar):
     for body, feature in ((a, ROUND_A), (b, ROUND_B)):
         if touches_at_one_point(shape_of(m, body)):
             return feature, separation(m, forms, a, b, shift, feature)[0]
+    if is_mesh(shape_of(m, a)) or is_mesh(shape_of(m, b)):
+        return FIELD, _between_boxes(m, forms, a, b, shift)[0]
     if not is_box(shape_of(m, a)) or not is_box(shape_of(m, b)):
         return CORES, separation(m, forms, a, b, shift, CORES)[0]
     best, farthest = 0, -math.inf
@@ -134,6 +139,22 @@ def best_feature(m, forms, a, b, shift, planar):
         if needed < apart < math.inf:
             best, farthest, needed = feature, apart, apart
     return best, farthest
+
+
+@kernel
+def _between_boxes(m, forms, a, b, shift):
+    """(at most the distance of a and b, unit normal from b to a): along the axes of the boxes around them."""
+    dx, dy, dz = between(m, a, b, shift)
+    most, n = -math.inf, (0.0, 0.0, 1.0)
+    for feature in range(6):
+        x, y, z = direction(m, a, b, feature)
+        along = dx * x + dy * y + dz * z
+        if along < 0.0:
+            along, x, y, z = -along, -x, -y, -z
+        apart = along - reach_along(m, forms, a, -x, -y, -z) - reach_along(m, forms, b, x, y, z)
+        if apart > most:
+            most, n = apart, (x, y, z)
+    return most, n[0], n[1], n[2]
 
 
 @kernel

@@ -7,11 +7,12 @@ import numpy as np
 from parsim.machine.jit import kernel
 from parsim.solid.balls import CALM, rate_balls
 from parsim.solid.forces import coefficients, compliance, free_time, hardness, press, relative_motion, velocity_at
+from parsim.solid.hollows import normal_by_elements
 from parsim.solid.islands import islands_of
 from parsim.solid.laws.foundation import FOUNDATION
 from parsim.solid.motion import alone, answer, drift, drift_involved, kick_involved, loads_on
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
-from parsim.solid.separation import BALLS, ROUND_A, overlap_share, ramp_of
+from parsim.solid.separation import BALLS, FIELD, ROUND_A, overlap_share, ramp_of
 from parsim.solid.springs import held_by_springs, rate_springs
 from parsim.solid.table import DRIVEN, POSITION, QUATERNION, RATE, ROLE, SWING, three
 from parsim.solid.tanks import LAPSE, SHARE, SHEAR, STORED, restrain
@@ -129,6 +130,8 @@ def _rate_pair(m, touch, c, steps, reach):
     a, b = pairs[c, A], pairs[c, B]
     apart, x, y, z = normal_of(m, touch, c)
     area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
+    if area > 0.0 and pairs[c, FEATURE] == FIELD:
+        x, y, z = normal_by_elements(touch.slots, pairs[c, FIRST], pairs[c, LAST], (x, y, z))
     calm = _calm(m, touch, c, (x, y, z), area) if area > 0.0 else False
     rigid = _rate(m, touch, c, (x, y, z), apart)
     if b >= 0 and apart < 0.0 and pairs[c, FEATURE] < ROUND_A:

@@ -6,11 +6,13 @@ from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.cores import between_cores
 from parsim.solid.curves import curve_of, radius_of, spot_area
+from parsim.solid.hollows import in_field
 from parsim.solid.laws.law import FLAT, LINE
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, INDEX, LAST, MIDDLE, POINT, A, B, above
 from parsim.solid.separation import (
     BALLS,
     CORES,
+    FIELD,
     ROUND_A,
     ROUND_B,
     between,
@@ -61,6 +63,11 @@ def measure(m, touch, c, n, apart):
     curve, opposite = (tanks[c, BEND], tanks[c, RADIUS]), (-n[0], -n[1], -n[2])
     if b < 0:
         return _against_plane(m, touch, (first, last, a), _NOWHERE, n, walls[-1 - b, 3], curve)
+    if pairs[c, FEATURE] == FIELD:
+        one, two = _shares(m, touch, a, b, n)
+        touch.slots[last, DEPTH] = touch.slots[last, AREA] = 0.0
+        total = in_field(m, touch, (first, middle, a, b), (_NOWHERE, by), one)
+        return total + in_field(m, touch, (middle, last, b, a), (by, _NOWHERE), -two)
     ramp = ramp_of(m, a, b)
     if pairs[c, FEATURE] < ROUND_A:
         tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
@@ -268,7 +275,7 @@ def show(m, touch, c, n, apart):
         _against_plane(m, touch, (middle, last, b), by, (-n[0], -n[1], -n[2]), far, curve)
         if pairs[c, FEATURE] == CORES:
             _between(m, touch, c, min(apart, -tanks[c, DEEP], -1e-300), 0.0)
-        else:
+        elif pairs[c, FEATURE] != FIELD:
             _cross(m, touch, by, c, n, 1.0)
     one, two = _shares(m, touch, a, b, n) if b >= 0 else (1.0, 0.0)
     total = 0.0

@@ -9,11 +9,12 @@ from parsim.solid.shapes.box import BoxShape
 from parsim.solid.shapes.cylinder import CylinderShape
 from parsim.solid.shapes.dilated_disc import DilatedDiscShape
 from parsim.solid.shapes.disc import DiscShape
+from parsim.solid.shapes.mesh import MeshShape
 from parsim.solid.shapes.polygon import PolygonShape
 from parsim.solid.shapes.prism import PrismShape
 from parsim.solid.shapes.sphere import SphereShape
 
-SHAPES = (BoxShape, SphereShape, DiscShape, PolygonShape, CylinderShape, PrismShape, DilatedDiscShape)
+SHAPES = (BoxShape, SphereShape, DiscShape, PolygonShape, CylinderShape, PrismShape, DilatedDiscShape, MeshShape)
 Shape = choice(*SHAPES)
 
 

@@ -2,8 +2,9 @@
 
 import math
 
+from parsim.geometry.field import field_ahead, field_distance
 from parsim.machine.jit import kernel
-from parsim.solid.shapes import SHAPES, box, cylinder, dilated_disc, disc, polygon, sphere, stood
+from parsim.solid.shapes import SHAPES, box, cylinder, dilated_disc, disc, mesh, polygon, sphere, stood
 
 LATERAL = 0.1  # cosine below which a face lies along a direction and does not bound the depth
 
@@ -31,7 +32,7 @@ _BOX, _SPHERE, _DISC, _POLYGON = (
     disc.DiscShape.NUMBER,
     polygon.PolygonShape.NUMBER,
 )
-_CYLINDER, _DILATED = cylinder.CylinderShape.NUMBER, dilated_disc.DilatedDiscShape.NUMBER
+_CYLINDER, _DILATED, _MESH = cylinder.CylinderShape.NUMBER, dilated_disc.DilatedDiscShape.NUMBER, mesh.MeshShape.NUMBER
 _ROUND = tuple(shape.NUMBER for shape in SHAPES if shape.ROUND)
 
 
@@ -64,6 +65,8 @@ def distance(forms, b, p):
         return _distance_stood(_in_disc(p[0], p[1], half[0]), p[2], half[2])
     if shape == _DILATED:
         return _distance_dilated(p, half)
+    if shape == _MESH:
+        return field_distance(p, forms.field, forms.grid[b])
     return _distance_stood(_in_polygon(p[0], p[1], _sides(forms, b)), p[2], half[2])
 
 
@@ -85,14 +88,16 @@ def ahead(forms, b, p, n, behind):
         return _ahead_stood(_across_disc(p[0], p[1], n[0], n[1], half[0]), p[2], n[2], half[2], behind)
     if shape == _DILATED:
         return _ahead_dilated(p, n, half, behind)
+    if shape == _MESH:
+        return field_ahead(p, n, forms.field, forms.grid[b], behind)
     return _ahead_stood(_across_polygon(p[0], p[1], n[0], n[1], _sides(forms, b)), p[2], n[2], half[2], behind)
 
 
 @kernel
 def reach(forms, b, d):
-    """How far the body reaches along the unit vector `d` (3,) from its centre, m."""
+    """How far the body reaches along the unit vector `d` (3,) from its centre, m; of a mesh, the box around it."""
     shape, half = forms.shape[b], half_of(forms, b)
-    if shape == _BOX:
+    if shape == _BOX or shape == _MESH:
         return _reach_box(d, half)
     if shape == _SPHERE:
         return half[0]
@@ -147,7 +152,7 @@ def depth(forms, b, p, d, ramp):
         return _depth_stood(
             _depth_disc(p[0], p[1], d[0], d[1], half[0], ramp, LATERAL), p[2], d[2], half[2], ramp, LATERAL
         )
-    if shape == _DILATED or shape == _SPHERE or shape == _DISC:
+    if shape == _DILATED or shape == _SPHERE or shape == _DISC or shape == _MESH:
         deep = -distance(forms, b, p)[0]
         return deep, (1.0 if deep > 0.0 else 0.0)
     sides = _sides(forms, b)
@@ -169,6 +174,12 @@ def touches_at_one_point(shape):
 def is_box(shape):
     """Whether a shape is a box."""
     return shape == _BOX
+
+
+@kernel
+def is_mesh(shape):
+    """Whether a shape is a mesh, which may be hollow: it has no core."""
+    return shape == _MESH
 
 
 @kernel

@@ -44,6 +44,10 @@ class ShapeTable(Table):
         """What is wrong with it: messages."""
         raise NotImplementedError
 
+    def hint(self, room):
+        """What may be wrong where it does not fit into the room (3,), m: the end of a message."""
+        return ""
+
     def radius(self, planar):
         """Radius of the ball, in a plane of the disc, around it, m."""
         raise NotImplementedError
@@ -71,6 +75,11 @@ class ShapeTable(Table):
     def sides(self):
         """Sides of the polygon that it is in a plane, (k, 8): see `forms.Forms`."""
         return np.zeros((0, 8))
+
+    @property
+    def field(self):
+        """`geometry.field.Field` of its signed distances, None where they have a closed form."""
+        return None
 
     def under(self, up, level):
         """Volume, m3, of what lies under `level`, m, along the unit vector `up` (3,) from its centre."""

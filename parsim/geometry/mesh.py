@@ -1,0 +1,164 @@
+"""Closed surfaces of triangles from files: read, checked, and what follows from them."""
+
+from typing import NamedTuple
+
+import meshio
+import numpy as np
+import trimesh
+
+from parsim.errors import InputError
+
+FORMATS = ("stl", "obj", "ply", "vtu")
+_SOLID = {
+    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
+    "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+}  # sides of cells, anticlockwise seen from outside
+_SAME = 1e-9  # of its size, by which corners may differ that are one
+
+
+class Mesh(NamedTuple):
+    """A closed surface about its centre of mass, in principal axes: points (k, 3), m; triangles (n, 3) of them,
+    anticlockwise seen from outside; volume, m3; moments (3,), m5, of the volume about the axes; turn: quaternion (4,)
+    from these axes to those of the file; centre (3,), m, in the file."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    volume: float
+    moments: np.ndarray
+    turn: tuple
+    centre: np.ndarray
+
+
+def read(path, scale):
+    """`Mesh` of a file, its lengths times `scale`. Raises InputError where it cannot be read or is not closed."""
+    kind = path.suffix[1:].lower()
+    if kind not in FORMATS:
+        raise InputError(f"{path}: a mesh is a file of the kinds {', '.join(FORMATS)}")
+    try:
+        points, triangles = _of_cells(path) if kind == "vtu" else _of_surface(path, kind)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except (OSError, ValueError, KeyError, IndexError, TypeError, SystemExit) as error:
+        raise InputError(f"{path}: cannot be read as {kind}: {error}") from None
+    if not len(triangles) or not np.isfinite(points).all():
+        raise InputError(f"{path}: holds no triangles" if not len(triangles) else f"{path}: holds what is no number")
+    return _placed(*_joined(scale * points, triangles), path)
+
+
+def _of_surface(path, kind):
+    with path.open("rb") as file:
+        surface = trimesh.load(file, file_type=kind, process=False, force="mesh")
+    return np.array(surface.vertices, float), np.array(surface.faces, int)
+
+
+def _of_cells(path):
+    """Surface cells, and of solid cells the sides that only one has, as triangles."""
+    mesh, out = meshio.read(path), [np.zeros((0, 3), int)]
+    for cells in mesh.cells:
+        sides = [cells.data] if cells.type in ("triangle", "quad") else []
+        sides += [cells.data[:, corners] for corners in _SOLID.get(cells.type, ())]
+        if sides:
+            sides = np.concatenate(sides)
+            _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+            sides = sides[np.sort(first[count == 1])]
+            out += [sides[:, [0, k, k + 1]] for k in range(1, sides.shape[1] - 1)]
+    return np.array(mesh.points, float), np.concatenate(out)
+
+
+def _joined(points, triangles):
+    """The same with corners in one place made one, and without triangles that have lost their area."""
+    size = np.ptp(points, axis=0).max()
+    _, first, same = np.unique(np.round(points / (_SAME * size)), axis=0, return_index=True, return_inverse=True)
+    triangles = same.reshape(-1)[triangles]
+    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return points[first], triangles[whole]
+
+
+def _placed(points, triangles, path):
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    _, inverse, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+    there, back = np.zeros(len(count), int), np.zeros(len(count), int)
+    np.add.at(there, inverse.reshape(-1), edges[:, 0] < edges[:, 1])
+    np.add.at(back, inverse.reshape(-1), edges[:, 0] > edges[:, 1])
+    if (count == 1).any():
+        raise InputError(
+            f"{path}: is open: {int((count == 1).sum())} of {len(count)} edges belong to one triangle only, the first "
+            f"at {_at(points, edges, inverse, int(np.argmax(count == 1)))} m; close its holes"
+        )
+    if (there != back).any():
+        raise InputError(
+            f"{path}: some of its triangles look in, others out: they disagree at {int((there != back).sum())} of "
+            f"{len(count)} edges, first at {_at(points, edges, inverse, int(np.argmax(there != back)))} m; make its "
+            "normals consistent"
+        )
+    surface = trimesh.Trimesh(points, triangles, process=False)
+    volume = float(surface.volume)
+    if volume < 0.0:
+        raise InputError(f"{path}: its faces are turned in, its volume is {volume:.4g} m3; flip its normals")
+    if volume == 0.0:
+        raise InputError(f"{path}: has no volume")
+    centre = np.array(surface.center_mass)
+    moments, axes = np.linalg.eigh(_exact_zeros(np.array(surface.moment_inertia)))
+    axes = _nearest_axes(axes)
+    moments = np.array([axes[:, k] @ surface.moment_inertia @ axes[:, k] for k in range(3)])
+    return Mesh((points - centre) @ axes, triangles, volume, moments, _quaternion(axes), centre)
+
+
+def _exact_zeros(tensor):
+    """The tensor (3, 3) without what is rounding, so that bodies whose axes are principal are not turned."""
+    return np.where(np.abs(tensor) < 1e-9 * np.trace(tensor), 0.0, tensor)
+
+
+def _nearest_axes(axes):
+    """Principal axes, columns (3, 3), in the order and with the signs that are nearest to x, y and z, right-handed."""
+    order, left = [], [0, 1, 2]
+    for k in range(3):
+        best = max(left, key=lambda c: (round(abs(axes[k, c]), 9), -c))
+        order.append(best)
+        left.remove(best)
+    axes = axes[:, order]
+    axes = axes * np.where(np.diag(axes) < 0.0, -1.0, 1.0)
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    return axes
+
+
+def _quaternion(turn):
+    """Quaternion (4,) of a rotation matrix (3, 3)."""
+    w, x, y, z = (np.sqrt(max(1.0 + turn[0, 0] * a + turn[1, 1] * b + turn[2, 2] * c, 0.0)) / 2.0 for a, b, c in (
+        (1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)))  # fmt: skip
+    most = int(np.argmax((w, x, y, z)))
+    if most == 0:
+        q = (
+            w,
+            (turn[2, 1] - turn[1, 2]) / (4 * w),
+            (turn[0, 2] - turn[2, 0]) / (4 * w),
+            (turn[1, 0] - turn[0, 1]) / (4 * w),
+        )
+    elif most == 1:
+        q = (
+            (turn[2, 1] - turn[1, 2]) / (4 * x),
+            x,
+            (turn[0, 1] + turn[1, 0]) / (4 * x),
+            (turn[0, 2] + turn[2, 0]) / (4 * x),
+        )
+    elif most == 2:
+        q = (
+            (turn[0, 2] - turn[2, 0]) / (4 * y),
+            (turn[0, 1] + turn[1, 0]) / (4 * y),
+            y,
+            (turn[1, 2] + turn[2, 1]) / (4 * y),
+        )
+    else:
+        q = (
+            (turn[1, 0] - turn[0, 1]) / (4 * z),
+            (turn[0, 2] + turn[2, 0]) / (4 * z),
+            (turn[1, 2] + turn[2, 1]) / (4 * z),
+            z,
+        )
+    return tuple(float(v) for v in q)
+
+
+def _at(points, edges, inverse, edge):
+    """Middle of an edge, as text."""
+    row = int(np.argmax(inverse.reshape(-1) == edge))
+    return "(" + ", ".join(f"{v:.4g}" for v in points[edges[row]].mean(axis=0)) + ")"

@@ -1,0 +1,178 @@
+"""A closed mesh of triangles from a file, convex or not: its table, and what follows from it.
+
+What takes long to import is imported where a mesh is read.
+"""
+
+import functools
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from parsim.case.types import Moderate
+from parsim.errors import InputError
+from parsim.solid.shapes.samples import Samples, face_of
+from parsim.solid.shapes.shape import ShapeTable
+from parsim.solid.shapes.surface import volume_under
+
+_NODES = 64  # of the field along its longest side, where nothing else is asked for
+_MOST = 400  # of them at most
+_LEAST_SHARE = 0.1  # of a lattice point that a sample stands for; what is less goes to its neighbours
+
+
+class MeshShape(ShapeTable):
+    """A closed surface of triangles."""
+
+    NUMBER = 7
+
+    kind: Literal["mesh"] = Field(description="a closed mesh of triangles from a file; 3D only")
+    file: str = Field(description="STL, OBJ, PLY or VTU; a path from where the case is, any origin")
+    scale: Moderate = Field(1.0, description="length, m, of one unit of the file: 0.001 for millimetres")
+    resolution: Moderate | None = Field(
+        None, description="distance between the nodes of its signed-distance field, m; left out: longest side / 64"
+    )
+
+    @property
+    def _mesh(self):
+        return _read(self.file, self.scale)
+
+    @property
+    def field(self):
+        """Its signed distances: `geometry.field.Field`."""
+        return _field(self.file, self.scale, self.step)
+
+    @property
+    def step(self):
+        """Distance between the nodes of its field, m."""
+        return self.resolution or float(np.ptp(self._mesh.points, axis=0).max()) / _NODES
+
+    @property
+    def turn(self):
+        """See `ShapeTable`."""
+        return self._mesh.turn
+
+    @property
+    def half(self):
+        """See `ShapeTable`."""
+        return tuple(float(v) for v in np.abs(self._mesh.points).max(axis=0))
+
+    @property
+    def volume(self):
+        """Volume, m3."""
+        return self._mesh.volume
+
+    def told(self):
+        """See `ShapeTable`."""
+        return f'shape.file = "{self.file}" of {" x ".join(f"{2.0 * h:.4g}" for h in self.half)} m'
+
+    def faults(self, planar):
+        """See `ShapeTable`."""
+        if planar:
+            yield 'shape.kind = "mesh": a 2D case has none; use a polygon'
+        try:
+            sides = np.ptp(self._mesh.points, axis=0)
+        except InputError as error:
+            yield f"shape.file: {error}"
+            return
+        if self.step > 0.5 * sides.min() or self.step < sides.max() / _MOST:
+            low, high = sides.max() / _MOST, 0.5 * sides.min()
+            yield f"shape.resolution = {self.resolution}: must be between {low:.4g} and {high:.4g} m for this mesh"
+
+    def hint(self, room):
+        """See `ShapeTable`."""
+        if max(self.half) < max(room):
+            return ""
+        return f"; {self.told()} at shape.scale = {self.scale:g}: for a file in millimetres it is 0.001"
+
+    def radius(self, planar):
+        """See `ShapeTable`."""
+        return float(np.linalg.norm(self._mesh.points, axis=1).max())
+
+    def reach(self, direction):
+        """See `ShapeTable`."""
+        return float((self._mesh.points @ direction).max())
+
+    def inertia(self, mass):
+        """See `ShapeTable`."""
+        return [float(moment) * mass / self.volume for moment in self._mesh.moments]
+
+    def thinnest(self, planar):
+        """Radius of the largest ball inside, m."""
+        return float(-self.field.value.min())
+
+    def away(self, points):
+        """See `ShapeTable`; by its field."""
+        from parsim.geometry.field import distances
+
+        return distances(np.asarray(points, float), *flat(self.field))
+
+    def under(self, up, level):
+        """See `ShapeTable`."""
+        points, quads = self.surface()
+        return volume_under(points @ np.array(up) - level, points, quads)
+
+    def surface(self):
+        """See `ShapeTable`; the last corner of a triangle is there twice."""
+        return self._mesh.points, self._mesh.triangles[:, [0, 1, 2, 2]]
+
+    def elements(self, planar, spacing=None):
+        """See `ShapeTable`: at the corners of its triangles, cut to that size; each has a third of those around."""
+        wanted = spacing or self.thinnest(False)
+        points, triangles = _cut(self._mesh, wanted)
+        share = np.cross(*(points[triangles[:, k]] - points[triangles[:, 0]] for k in (1, 2))) / 6.0
+        area = np.zeros_like(points)
+        for k in range(3):
+            np.add.at(area, triangles[:, k], share)
+        return np.hstack([points, area]), [wanted] * 3
+
+    def samples(self, spacing, depth, planar):
+        """See `ShapeTable`: a lattice, each point with the share of its cell that is inside; patches of its surface."""
+        low, high = self._mesh.points.min(axis=0), self._mesh.points.max(axis=0)
+        count = np.maximum(np.round((high - low) / spacing).astype(int), 1)
+        axes = [a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in zip(low, high, count, strict=True)]
+        points = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+        away = self.away(points)
+        share = np.clip(0.5 - away / spacing, 0.0, 1.0)
+        kept = share >= _LEAST_SHARE if (share >= _LEAST_SHARE).any() else away == away.min()
+        points, away, share = points[kept], away[kept], np.maximum(share[kept], _LEAST_SHARE)
+        share *= self.volume / spacing**3 / share.sum()
+        near = -away < depth
+        points, share = points[near], share[near]
+        corners, triangles = _cut(self._mesh, spacing)
+        place = corners[triangles].mean(axis=1)
+        normal = 0.5 * np.cross(*(corners[triangles[:, k]] - corners[triangles[:, 0]] for k in (1, 2)))
+        area = np.linalg.norm(normal, axis=1)
+        place, normal, area = place[area > 0.0], normal[area > 0.0] / area[area > 0.0, None], area[area > 0.0]
+        sample = np.array([np.argmin(((points - x) ** 2).sum(axis=1)) for x in place])
+        return Samples(points, share, sample, face_of(normal), np.ones(len(area), bool), place, normal, area)
+
+
+def flat(field):
+    """(values (n,), grid (8,)) of a field as kernels take it: where it begins, nodes along the axes, step, start."""
+    return field.value.ravel(), np.array([0.0, *field.value.shape, field.step, *field.start])
+
+
+@functools.cache
+def _read(file, scale):
+    from parsim.geometry.mesh import read
+
+    return read(Path(file), scale)
+
+
+@functools.cache
+def _field(file, scale, step):
+    from parsim.geometry.field import field_of
+
+    mesh = _read(file, scale)
+    return field_of(mesh.points, mesh.triangles, step)
+
+
+def _cut(mesh, size):
+    """Points (k, 3), m, and triangles (n, 3) of a mesh, cut until their edges are at most `size`, m, long."""
+    import trimesh
+
+    points, triangles = trimesh.remesh.subdivide_to_size(mesh.points, mesh.triangles, size, max_iter=20)
+    whole = np.round(points / (1e-6 * size))
+    _, first, same = np.unique(whole, axis=0, return_index=True, return_inverse=True)
+    return points[first], same.reshape(-1)[triangles]
