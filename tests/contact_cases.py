@@ -48,6 +48,7 @@ def case(
     steps=20,
     law=DEFAULT,
     rolling=0.0,
+    ramp=0.0,
     **other,
 ):
     """The parts of a case that contacts read; soft materials make long sub-steps."""
@@ -59,6 +60,7 @@ def case(
         dimensions=3,
         axes=(0, 1, 2),
         gravity=gravity,
+        gravity_ramp=ramp,
         contacts=numbers,
         gate=None,
         materials={"ice": material},

@@ -2,12 +2,19 @@
 
 import numpy as np
 import pytest
+from contact_cases import boxes, budget, go
+from contact_cases import case as contact_case
 
 import parsim
 from parsim.__main__ import main
 from parsim.case.model import parse
+from parsim.case.scales import gravity_at
 from parsim.domain.comm import Comm
+from parsim.errors import InputError
 from parsim.run.simulation import Simulation
+from parsim.solid.bodies import Bodies
+from parsim.solid.contacts import Contacts
+from parsim.solid.shapes import SphereShape
 
 SLOPE = """
 title = "Two balls and a box on a slope"
@@ -84,3 +91,33 @@ def test_the_same_bits_on_two_ranks_and_after_a_restart(tmp_path, mpirun, capsys
     assert done.returncode == 0, done.stderr
     assert main(["resume", str(tmp_path / "two"), "--until", "0.12"]) == 0
     assert main(["compare", str(tmp_path / "one"), str(tmp_path / "two")]) == 0, capsys.readouterr().out
+
+
+def test_gravity_may_grow_from_nothing():
+    """A ball falls g t^3 / (6 ramp) meanwhile; the account of energy has the work that this takes."""
+    shape = SphereShape(kind="sphere", diameter=0.1)
+    ball = Bodies([shape], [1.0], [(0.5, 0.5, 0.9)])
+    contacts = Contacts(ball, contact_case(ramp=0.4, restitution=0.5))
+    go(ball, contacts, 1e-3, 300)
+    assert ball.position[0, 2] == pytest.approx(0.9 - 9.81 * 0.3**3 / (6 * 0.4), rel=1e-5)
+    potential = ball.potential_energy(gravity_at(contact_case(ramp=0.4), 0.3))
+    assert ball.kinetic_energy() + potential - contacts.driven_work == pytest.approx(0.0, abs=1e-4)
+    go(ball, contacts, 1e-3, 3000, time=0.3)
+    assert ball.kinetic_energy() < 1e-6
+    assert budget(ball, contacts) == pytest.approx(0.0, abs=0.03)
+
+
+def test_water_has_its_weight_from_the_start():
+    with pytest.raises(InputError, match="gravity_ramp = 0.5: water has its weight from the start; see run.settle"):
+        fill = {"min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 0.5]}
+        parse(lone(spacing=0.02, water={"fill": [fill]}, gravity_ramp=0.5))
+
+
+@pytest.mark.parametrize(("young", "doubtful"), [(1e5, True), (1e9, False)])
+def test_bodies_that_overlap_too_much_are_told(young, doubtful):
+    block = Bodies(boxes((0.05, 0.05, 0.05)), [1.0], [(0.5, 0.5, 0.06)], velocity=[(0.0, 0.0, -2.0)])
+    contacts = Contacts(block, contact_case(young=young))
+    go(block, contacts, 1e-4, 200)
+    assert (contacts.overlap > 0.01) == doubtful
+    told = list(contacts.doubts())
+    assert bool(told) == doubtful and (not told or "of the least width of one" in told[0])

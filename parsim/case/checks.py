@@ -27,7 +27,7 @@ def checked(case, messages):
         bodies.gate,
         bodies.sensors,
     )
-    for check in (_spacing, _box, _faces, _water, fills.faults, _speed, *of_bodies):
+    for check in (_spacing, _box, _faces, _water, fills.faults, _speed, _ramp, *of_bodies):
         faults += check(case)
     if messages or faults:
         raise InputError([*messages, *faults])
@@ -175,6 +175,12 @@ def _faces(case):
     if case.dimensions == 2 and given != ("wall", "wall"):
         faults.append(f'box.faces.y_min, y_max = "{given[0]}", "{given[1]}": a 2D case has none; leave them out')
     return faults
+
+
+def _ramp(case):
+    if case.gravity_ramp > 0.0 and case.water.fill:
+        return [f"gravity_ramp = {case.gravity_ramp!r}: water has its weight from the start; see run.settle"]
+    return []
 
 
 def _speed(case):

@@ -137,6 +137,9 @@ class Case(Table):
         description="particle spacing l0, m; must divide the box; without water half the thinnest body if left out",
     )
     gravity: Vector = Field((0.0, 0.0, -9.81), description="gravity, m/s2")
+    gravity_ramp: NotNegative = Field(
+        0.0, description="time from 0 on in which gravity grows from nothing, s; of a case without water"
+    )
     wall_material: Name | None = Field(None, description="material of walls and gate; left out: the first material")
     box: Box = Field(description="the box that holds everything")
     water: Water = Field(Water(), description="the water and its scheme")

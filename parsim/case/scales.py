@@ -35,6 +35,12 @@ def scales(case):
     return Scales(length, power_of_two(case.water.density * longest ** len(case.axes)), length / power_of_two(speed))
 
 
+def gravity_at(case, time):
+    """Gravity (3,), m/s2, at a time, s: it may grow from nothing at the start."""
+    share = min(max(time / case.gravity_ramp, 0.0), 1.0) if case.gravity_ramp > 0.0 else 1.0
+    return tuple(share * g for g in case.gravity)
+
+
 def power_of_two(value):
     """The largest power of two that is at most `value` > 0."""
     return 2.0 ** (math.frexp(value)[1] - 1)

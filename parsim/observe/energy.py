@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from parsim.case.scales import scales
+from parsim.case.scales import gravity_at, scales
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 
@@ -33,18 +33,19 @@ class Energy:
     )
 
     def __init__(self, case: Case) -> None:
-        self._gravity, self._unit = case.gravity, scales(case).energy
+        self._case, self._unit = case, scales(case).energy
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 3))
-        energies(at, p.kinematics, s.scheme.mass, self._gravity, out)
+        gravity = gravity_at(self._case, s.time)
+        energies(at, p.kinematics, s.scheme.mass, gravity, out)
         out[:, 2] = s.scheme.elastic(p, at)
         b, c = s.bodies, s.contacts
         parts = [
             *map(float, s.domain.sum(out, self._unit)),
             b.kinetic_energy(),
-            b.potential_energy(self._gravity),
+            b.potential_energy(gravity),
             c.elastic_energy(),
         ]
         return [[s.dt, *parts, c.driven_work, c.dissipated, sum(parts)]]

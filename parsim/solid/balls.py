@@ -10,7 +10,7 @@ from parsim.solid.curves import spot_area
 from parsim.solid.element import friction_force, normal_force, rolling_torque
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.laws.law import LINE, SPOT
-from parsim.solid.search import FEATURE, LAST, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
+from parsim.solid.search import DEPTH, FEATURE, LAST, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import BALLS, gap_of_balls
 from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RATE, RUSH, SPIN, VELOCITY, three
 from parsim.solid.tanks import BEFORE, LAPSE, LOADS, LOSSES, NOW, SHEAR, SHEAR_BEFORE
@@ -30,13 +30,14 @@ def press_balls(m, touch, which, lapse, span):
         apart, n = _gap(m, touch.walls, pairs, touch.shift, c)
         tanks[c, BEFORE], tanks[c, SHEAR_BEFORE] = tanks[c, NOW], tanks[c, SHEAR]
         if apart >= 0.0:
-            marks[pairs[c, LAST], TOUCHING] = 0
+            marks[pairs[c, LAST], TOUCHING], slots[pairs[c, LAST], DEPTH] = 0, 0.0
             tanks[c, NOW] = tanks[c, SHEAR] = 0.0
             for k in range(LOADS, LOSSES + 6):
                 tanks[c, k] = 0.0
             continue
         touching += 1
         slot, ab = slots[pairs[c, LAST]], (pairs[c, A], pairs[c, B])
+        slot[DEPTH] = -apart
         age = lapse + tanks[c, LAPSE] if span > 0.0 else 0.0
         if not marks[pairs[c, LAST], TOUCHING]:
             slot[STRETCH : ROLL + 3], marks[pairs[c, LAST], TOUCHING], age = 0.0, 1, 0.0

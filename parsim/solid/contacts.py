@@ -1,17 +1,20 @@
 """Contacts of rigid bodies with each other, walls and what is driven, and their motion under all loads."""
 
+import functools
 import math
 
 import numpy as np
 
+from parsim.case.scales import gravity_at
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.rotation import matrices
 from parsim.solid import table
 from parsim.solid.handover import begin, finish
 from parsim.solid.hard import advance_hard
 from parsim.solid.kinetics import kinetic
-from parsim.solid.laws.law import damping_of
+from parsim.solid.laws.pairs import law_of_pairs, thinnest
 from parsim.solid.nearby import near_pairs
+from parsim.solid.points import deepest
 from parsim.solid.search import (
     ELEMENT,
     KEY,
@@ -32,6 +35,7 @@ from parsim.solid.springs import held_by_springs
 from parsim.solid.substeps import advance, elastic
 from parsim.solid.tanks import KEPT, SHEAR, recall_tanks, room_for_tanks
 
+_OVERLAP = 0.01  # of the least width of a body, above which it is doubtful
 _SHARE = 0.1  # of the smallest edge that a body may move in one step
 
 
@@ -40,18 +44,20 @@ class Contacts:
 
     driven: plates with half (3,), m, `centre` and `velocity` at a time (`parsim.boundary.gate.Gate`).
     Attributes: dissipated, J, energy lost in contacts so far; driven_work, J, work of these on bodies and on water so
-    far; count, elements that touch; steps, sub-steps of the last step; residual, of hard bodies' impulses, the largest
-    so far.
+    far; count, elements that touch; steps, sub-steps of the last step; residual, of hard bodies' impulses, and
+    overlap, over the least width of a body that touches, the largest so far.
     """
 
     def __init__(self, bodies, case, driven=()):
-        self.bodies, self._driven, self._gravity = bodies, list(driven), np.array(case.gravity, float)
+        self.bodies, self._driven = bodies, list(driven)
+        self._gravity_at, self._gravity = functools.partial(gravity_at, case), np.array(case.gravity, float)
         self._steps_per_contact = case.contacts.steps_per_contact
         material = list(case.materials).index(case.wall_material) if case.materials else 0
         self._walls, self._period = _of_material(planes_of_walls(case, "bodies"), material), period(case)
-        self._law, self._pair_law = case.contacts.law.NUMBER, _law(case, bodies)
+        self._law, self._pair_law = case.contacts.law.NUMBER, law_of_pairs(case, bodies)
         law = case.contacts.law
         self._hard, self.residual = (law.sweeps, law.residual) if law.INSTANT else None, 0.0
+        self.overlap = 0.0
         first, self._elements, cell = elements_of(bodies)
         self._first = np.append(first, np.full(len(self._driven), first[-1]))  # what is driven has none
         self._table = _table(bodies, cell, self._driven, material)
@@ -59,7 +65,7 @@ class Contacts:
         self._pairs, self._shift = room_for_pairs(64)
         self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
-        self._smallest = 2.0 * _thinnest(bodies) if len(bodies) else math.inf
+        self._smallest = 2.0 * thinnest(bodies) if len(bodies) else math.inf
         self.dissipated = self.driven_work = self._time = 0.0
         self.count, self.steps = 0, 0
         self._reacts = np.flatnonzero(bodies.joints.reacts)
@@ -79,6 +85,8 @@ class Contacts:
         step.
         """
         bodies.water_load[:] = water_load
+        self._grow(time, dt)
+        self._gravity = np.array(self._gravity_at(time + 0.5 * dt))
         before, held = self._tied_now() if self._reacts.size else None, bodies.held(time)
         number, slots, reach, lost = self._prepare(bodies, held, time, dt)
         self.dissipated += lost
@@ -92,6 +100,7 @@ class Contacts:
                 self._table, self._touch(), number, dt, reach, self._steps_per_contact
             )
         self.dissipated, self.driven_work, self._time = self.dissipated + lost, self.driven_work + work, time + dt
+        self.overlap = max(self.overlap, deepest(self._touch(), number))
         self._remember(number, slots)
         finish(
             self._table,
@@ -102,6 +111,7 @@ class Contacts:
             bodies.contact_load,
             bodies.spring_load,
         )
+        self._grow(time, dt)
         if before:
             self._react(before, held, dt)
 
@@ -114,9 +124,17 @@ class Contacts:
             return float(held_by_springs(self._table, self.bodies.springs))
         return float(elastic(self._table, self._touch(), number))
 
+    def doubts(self):
+        """What was doubtful so far: messages."""
+        if self.overlap > _OVERLAP:
+            yield (
+                f"bodies have overlapped by {100.0 * self.overlap:.3g} % of the least width of one: their materials "
+                "are too soft, or contacts.steps_per_contact too few, for how fast they meet"
+            )
+
     def kept(self):
         """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
-        totals = np.array([self.dissipated, self.driven_work, self._time])
+        totals = np.array([self.dissipated, self.driven_work, self._time, self.overlap, self.residual])
         return {
             "key": self._key.copy(),
             "element": self._element.copy(),
@@ -131,7 +149,7 @@ class Contacts:
         self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
         self._stored = np.array(kept["stored"], float).reshape(-1, KEPT)
         self._stretch = np.array(kept["stretch"], float).reshape(-1, 6)
-        self.dissipated, self.driven_work, self._time = (float(v) for v in kept["totals"])
+        self.dissipated, self.driven_work, self._time, self.overlap, self.residual = map(float, kept["totals"])
         self.count = len(self._key)
 
     def _prepare(self, bodies, held, time, dt):
@@ -157,6 +175,12 @@ class Contacts:
             m[b, table.INVERSE : table.INVERSE + 3] = m[b, table.GIVEN : table.GIVEN + 3] = 0.0
             m[b, table.GIVEN + 3 : table.GIVEN + 6] = 0.0
             m[b, table.VELOCITY : table.VELOCITY + 3], m[b, table.SPIN : table.SPIN + 3] = velocity, spin
+
+    def _grow(self, time, dt):
+        """Count half the work of gravity that grows over a step: asked before it and after."""
+        less = np.subtract(self._gravity_at(time), self._gravity_at(time + dt))
+        if less.any():
+            self.driven_work += 0.5 * float((self.bodies.mass[:, None] * self.bodies.position * less).sum())
 
     def _tied_now(self):
         """Momentum (k, 6), kg m/s, kg m2/s, of the bodies that react to joints, and place (d, 3), m, and energy, J, of
@@ -235,40 +259,6 @@ class Contacts:
 
 def _pose(bodies):
     return bodies.position, bodies.quaternion, bodies.velocity, bodies.spin
-
-
-def _law(case, bodies):
-    """Table (5, n, n) over pairs of materials: what the law needs of them; damping ratio, of hard bodies
-    restitution; friction; shear; rolling friction.
-
-    Restitution and friction of a pair are those given for it, else the means of the two (Canelas et al. 2016, doi
-    10.1016/j.cpc.2016.05.003).
-    """
-    each, names = list(case.materials.values()), list(case.materials)
-    thinnest = _thinnest(bodies) if len(bodies) else 1.0
-    given = {frozenset(pair.between): pair for pair in case.contacts.pairs}
-    law = np.zeros((5, len(each), len(each)))
-    for i, one in enumerate(each):
-        for j, two in enumerate(each):
-            law[0, i, j] = case.contacts.law.of_pair(one, two, thinnest)
-            pair = given.get(frozenset((names[i], names[j])))
-            restitution = _of_pair("restitution", one, two, pair)
-            law[1, i, j] = restitution if case.contacts.law.INSTANT else damping_of(restitution)
-            law[2, i, j] = _of_pair("friction", one, two, pair)
-            law[3, i, j] = case.contacts.law.shear(one, two)
-            law[4, i, j] = _of_pair("rolling", one, two, pair)
-    return law
-
-
-def _thinnest(bodies):
-    """Half the least width of any body, m."""
-    return min(shape.thinnest(bodies.planar) for shape in bodies.shapes)
-
-
-def _of_pair(key, one, two, pair):
-    """What is given for a pair of materials, else the mean of the two."""
-    own = getattr(pair, key) if pair else None
-    return 0.5 * (getattr(one, key) + getattr(two, key)) if own is None else own
 
 
 def _of_material(walls, material):

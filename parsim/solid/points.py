@@ -7,8 +7,9 @@ import numpy as np
 
 from parsim.machine.jit import kernel
 from parsim.solid.motion import answer
-from parsim.solid.search import DEPTH, FEATURE, FIRST, LAST, NORMAL, POINT, A, B
+from parsim.solid.search import DEPTH, FEATURE, FIRST, LAST, NORMAL, POINT, TOUCHING, A, B
 from parsim.solid.separation import FIELD
+from parsim.solid.shapes.polygon import MARGIN
 from parsim.solid.table import POSITION, three
 from parsim.solid.touch import measure, normal_of
 
@@ -62,6 +63,20 @@ def points_of(m, touch, number):
                 _note(m, touch, out, k, c, slot, n)
                 k += 1
     return out
+
+
+@kernel
+def deepest(touch, number):
+    """The largest depth of any element that touches over the least width of a body of its pair."""
+    pairs, slots, margin, most = touch.pairs, touch.slots, touch.forms.margin, 0.0
+    for c in range(number):
+        thin = margin[pairs[c, A]]
+        if pairs[c, B] >= 0:
+            thin = min(thin, margin[pairs[c, B]])
+        for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
+            if touch.marks[slot, TOUCHING] and slots[slot, DEPTH] > 0.0:
+                most = max(most, slots[slot, DEPTH] / thin)
+    return 0.5 * MARGIN * most
 
 
 @kernel
