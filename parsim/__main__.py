@@ -85,11 +85,14 @@ def validate(
         typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there"),
     ] = None,
     ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")] = 1,
+    record: Annotated[
+        Path | None, typer.Option("--record", metavar="CSV", help="bring this table of results up to date")
+    ] = None,
 ) -> int:
     """Run examples and compare them with published and exact numbers; exit code 3 if a bar is missed."""
     from parsim.validate.runs import validate as check
 
-    return check(names or [], level, as_json, out, ranks)
+    return check(names or [], level, as_json, out, ranks, record)
 
 
 @command

@@ -1,5 +1,6 @@
 """`parsim validate`: what it runs, how it judges, and what it says of wrong bars."""
 
+import csv
 import json
 import subprocess
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ from parsim.report.measures import Published
 from parsim.validate import bars as held
 from parsim.validate import runs
 from parsim.validate.bars import Bar
+from parsim.validate.record import note
 
 BAR = Bar("case/one", "quick", "height", "apex", 0.01, False, {})
 
@@ -78,3 +80,18 @@ def test_a_run_goes_on_where_it_is_and_one_of_another_case_is_refused(tmp_path, 
     (out / "run.json").write_text(json.dumps({"status": "running"}))
     assert not runs._run(file, out, 2)
     assert said == [["run", str(file), "-o", str(out)], ["resume", str(out), "--case", str(file), "-n", "2"]]
+
+
+def test_results_are_kept_and_brought_up_to_date(tmp_path):
+    table = tmp_path / "results.csv"
+    one, two = runs.judged(BAR, 1.005, number(1.0)), runs.judged(BAR, 1.5, number(1.0, 2.0)) | {"quantity": "width"}
+    note(table, [one, two])
+    note(table, [runs.judged(BAR, 0.9, number(1.0)), two | {"value": None}])
+    with table.open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["quantity"] for row in rows] == ["height", "width"]
+    assert rows[0]["value"] == "0.9" and rows[0]["passed"] == "False" and rows[0]["machine"]
+    assert rows[1]["reference"] == "1 to 2" and rows[1]["date"].count("-") == 2
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match="is no table of results"):
+        note(tmp_path / "other.csv", [one])

@@ -15,6 +15,7 @@ from typing import Any
 from parsim.bench import cases
 from parsim.launch import mpirun
 from parsim.machine import variant
+from parsim.machine.processor import processor
 
 SUPPORTS = (3.1, 2.1)
 SIZES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000)
@@ -136,18 +137,13 @@ def _size(count, tell):
 def _machine():
     return {
         "host": platform.node(),
-        "processor": _model(),
+        "processor": processor(),
         "cores": mpirun.cores(),
         "memory_bytes": _memory(),
         "kernel": variant.chosen(),
         "python": platform.python_version(),
         **{name: version(name) for name in ("parsim", "numba", "numpy", "mpi4py")},
     }
-
-
-def _model():
-    with open("/proc/cpuinfo") as lines:
-        return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
 def _memory():

@@ -15,18 +15,24 @@ from parsim.output.reader import is_output
 from parsim.report.measures import Published, published
 from parsim.validate.bars import Bar, bars
 from parsim.validate.measures import MEASURES
+from parsim.validate.record import note
 
 MISSED = 3
 
 
-def validate(names: Iterable[str], level: str, as_json: bool, out: Path | None, ranks: int) -> int:
+def validate(
+    names: Iterable[str], level: str, as_json: bool, out: Path | None, ranks: int, record: Path | None = None
+) -> int:
     """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed.
 
-    Runs whose output is in `out` go on there, if they are of the same case and not done.
+    Runs whose output is in `out` go on there, if they are of the same case and not done. `record`: a table of results,
+    where the rows of what has been run take the place of those before.
     """
     held = bars(list(names), level)
     with tempfile.TemporaryDirectory() as scratch:
         rows = list(_rows(held, Path(out or scratch), ranks, as_json))
+    if record:
+        note(record, rows)
     if as_json:
         print(json.dumps(rows, indent=1))
     if any(row["value"] is None for row in rows):
