@@ -99,7 +99,8 @@ def on_slope(angle, layers, seconds, ramp=0.0):
     contacts, start = Contacts(bodies, case(young=1e8)), bodies.position.copy()
     for step in range(round(seconds / 5e-4)):
         tilt = math.radians(angle) * min(step * 5e-4 / ramp if ramp else 1.0, 1.0)
-        contacts._gravity[:] = 9.81 * math.sin(tilt), 0.0, -9.81 * math.cos(tilt)
+        tilted = 9.81 * math.sin(tilt), 0.0, -9.81 * math.cos(tilt)
+        contacts._gravity_at = lambda time, tilted=tilted: tilted
         go(bodies, contacts, 5e-4, 1)
     return bodies, contacts, start
 

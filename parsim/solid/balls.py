@@ -8,13 +8,13 @@ import math
 from parsim.machine.jit import kernel
 from parsim.solid.curves import spot_area
 from parsim.solid.element import friction_force, normal_force, rolling_torque
+from parsim.solid.faces import EXPECTED
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.laws.law import LINE, SPOT
 from parsim.solid.search import DEPTH, FEATURE, LAST, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import BALLS, gap_of_balls
 from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RATE, RUSH, SPIN, VELOCITY, three
 from parsim.solid.tanks import BEFORE, LAPSE, LOADS, LOSSES, NOW, SHEAR, SHEAR_BEFORE
-from parsim.solid.touch import EXPECTED
 
 CALM = 0.25  # how far, over their depth, contacts at rest may still move
 

@@ -4,7 +4,8 @@ import math
 
 from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
-from parsim.solid.search import AREA, DEPTH, INDEX, NORMAL, POINT
+from parsim.solid.faces import facing, note
+from parsim.solid.search import AREA, DEPTH, INDEX, NORMAL
 from parsim.solid.shapes.kernels import distance, is_box
 from parsim.solid.table import pose_of, shape_of
 
@@ -19,24 +20,19 @@ def in_field(m, touch, which, by, share):
     marks, slots, (first, last, body, other), total = touch.marks, touch.slots, which, 0.0
     (cx, cy, cz), t = pose_of(m, body, by[0])
     (bx, by_, bz), s = pose_of(m, other, by[1])
-    sign = 1.0 if share > 0.0 else -1.0
+    sign, box = (1.0 if share > 0.0 else -1.0), is_box(shape_of(m, body))
     for slot in range(first, last):
         if marks[slot, INDEX] < 0:
             slots[slot, DEPTH] = slots[slot, AREA] = 0.0
             continue  # points that move along a curved side; the corners of the mesh feel that
-        e = touch.elements[marks[slot, INDEX]]
-        x, y, z = to_global(t, e[0], e[1], e[2])
+        i = marks[slot, INDEX]
+        x, y, z = to_global(t, touch.elements[i, 0], touch.elements[i, 1], touch.elements[i, 2])
         x, y, z = cx + x, cy + y, cz + z
         high, n = distance(touch.forms, other, to_body(s, x - bx, y - by_, z - bz))
         n = to_global(s, n[0], n[1], n[2])
-        look = to_body(t, n[0], n[1], n[2])
-        if is_box(shape_of(m, body)):
-            area = max(-e[3] * look[0], 0.0) + max(-e[4] * look[1], 0.0) + max(-e[5] * look[2], 0.0)
-        else:
-            area = max(-e[3] * look[0] - e[4] * look[1] - e[5] * look[2], 0.0)
-        area *= abs(share) if high < 0.0 else 0.0
-        slots[slot, DEPTH], slots[slot, AREA] = (-high if area > 0.0 else 0.0), area
-        slots[slot, POINT], slots[slot, POINT + 1], slots[slot, POINT + 2] = x, y, z
+        look = to_body(t, -n[0], -n[1], -n[2])
+        area = abs(share) * facing(touch.elements, i, box, look) if high < 0.0 else 0.0
+        note(slots, slot, -high if area > 0.0 else 0.0, area, x, y, z)
         for k in range(3):
             slots[slot, NORMAL + k] = sign * n[k]
         total += area

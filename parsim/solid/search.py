@@ -94,7 +94,7 @@ def fill_slots(m, touch, number, reach):
                 slot = _list(m, touch, c, (b, a, own), reach, slot)
             own += _watched(m, touch, b)
         pairs[c, LAST] = slot
-        slot = _mark(touch, slot, pairs[c, KEY], own, -1)
+        slot = _mark(touch.marks, touch.slots, slot, pairs[c, KEY], own, -1)
     return slot
 
 
@@ -105,8 +105,7 @@ def _watched(m, touch, b):
 
 
 @kernel
-def _mark(touch, slot, key, element, index):
-    marks, slots = touch.marks, touch.slots
+def _mark(marks, slots, slot, key, element, index):
     if slot < len(marks):
         marks[slot, SLOT_KEY], marks[slot, ELEMENT], marks[slot, INDEX], marks[slot, TOUCHING] = key, element, index, 0
         for k in range(14):
@@ -117,28 +116,34 @@ def _mark(touch, slot, key, element, index):
 @kernel
 def _list(m, touch, c, which, reach, slot):
     """Note the elements of a body within reach of another (a body or a wall) from a number on: `which`."""
-    first, elements, walls, pairs, shift = touch.first, touch.elements, touch.walls, touch.pairs, touch.shift
+    first, elements, walls, marks, slots = touch.first, touch.elements, touch.walls, touch.marks, touch.slots
     body, other, offset = which
-    sign = 1.0 if body == pairs[c, A] else -1.0
-    _, t = pose_of(m, body, (0.0, 0.0, 0.0))
-    for index in range(first[body], first[body + 1]):
-        x, y, z = to_global(t, elements[index, 0], elements[index, 1], elements[index, 2])
-        if other < 0:
-            w = walls[-1 - other]
-            x, y, z = x + m[body, POSITION], y + m[body, POSITION + 1], z + m[body, POSITION + 2]
+    key, sign = touch.pairs[c, KEY], 1.0 if body == touch.pairs[c, A] else -1.0
+    (cx, cy, cz), t = pose_of(m, body, (0.0, 0.0, 0.0))
+    if other < 0:
+        w = walls[-1 - other]
+        for index in range(first[body], first[body + 1]):
+            x, y, z = to_global(t, elements[index, 0], elements[index, 1], elements[index, 2])
+            x, y, z = x + cx, y + cy, z + cz
             near = w[0] * x + w[1] * y + w[2] * z - w[3] < reach and w[4] <= x <= w[7] and w[5] <= y <= w[8]
-            near = near and w[6] <= z <= w[9]
-        else:
-            by = (sign * shift[c, 0], sign * shift[c, 1], sign * shift[c, 2])
-            dx, dy, dz = between(m, body, other, by)
-            q = to_body(pose_of(m, other, by)[1], x + dx, y + dy, z + dz)
-            far, near = reach + ramp_of(m, body, other), True
-            for k in range(3):
-                near = near and abs(q[k]) < m[other, HALF + k] + far
-        if near:
-            slot = _mark(touch, slot, pairs[c, KEY], offset + index - first[body], index)
+            if near and w[6] <= z <= w[9]:
+                slot = _mark(marks, slots, slot, key, offset + index - first[body], index)
+    else:
+        by = (sign * touch.shift[c, 0], sign * touch.shift[c, 1], sign * touch.shift[c, 2])
+        dx, dy, dz = between(m, body, other, by)
+        s, far = pose_of(m, other, by)[1], reach + ramp_of(m, body, other)
+        ox, oy, oz = to_body(s, dx, dy, dz)
+        px, py, pz = to_body(s, t[0], t[3], t[6])  # from the frame of the one to that of the other, by columns
+        qx, qy, qz = to_body(s, t[1], t[4], t[7])
+        rx, ry, rz = to_body(s, t[2], t[5], t[8])
+        wide, deep, high = m[other, HALF] + far, m[other, HALF + 1] + far, m[other, HALF + 2] + far
+        for index in range(first[body], first[body + 1]):
+            x, y, z = elements[index, 0], elements[index, 1], elements[index, 2]
+            near = abs(ox + px * x + qx * y + rx * z) < wide and abs(oy + py * x + qy * y + ry * z) < deep
+            if near and abs(oz + pz * x + qz * y + rz * z) < high:
+                slot = _mark(marks, slots, slot, key, offset + index - first[body], index)
     for k in range(along_side(shape_of(m, body))):
-        slot = _mark(touch, slot, pairs[c, KEY], offset + first[body + 1] - first[body] + k, -2 - k)
+        slot = _mark(marks, slots, slot, key, offset + first[body + 1] - first[body] + k, -2 - k)
     return slot
 
 

@@ -2,13 +2,13 @@
 
 import math
 
-from parsim.geometry.rotation import to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.solid.cores import between_cores
 from parsim.solid.curves import curve_of, radius_of, spot_area
+from parsim.solid.faces import EXPECTED, against_plane, note, within
 from parsim.solid.hollows import in_field
 from parsim.solid.laws.law import FLAT, LINE
-from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, INDEX, LAST, MIDDLE, POINT, A, B, above
+from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, MIDDLE, POINT, A, B, above
 from parsim.solid.separation import (
     BALLS,
     CORES,
@@ -21,12 +21,11 @@ from parsim.solid.separation import (
     ramp_of,
     separation,
 )
-from parsim.solid.shapes.kernels import along_side, depth, is_box, on_side, touches_along_a_line
-from parsim.solid.table import CELL, HALF, POSITION, pose_of, shape_of, three
+from parsim.solid.shapes.kernels import along_side
+from parsim.solid.table import CELL, HALF, POSITION, three
 from parsim.solid.tanks import BEND, DEEP, RADIUS, SHARE
 
 _NOWHERE = (0.0, 0.0, 0.0)
-EXPECTED = 0.1  # of its radius, that something round is expected to be pressed in; its stiffness grows with the depth
 
 
 @kernel
@@ -62,7 +61,7 @@ def measure(m, touch, c, n, apart):
         return touch.slots[last, AREA] if b >= 0 or _on_wall(touch, c) else 0.0
     curve, opposite = (tanks[c, BEND], tanks[c, RADIUS]), (-n[0], -n[1], -n[2])
     if b < 0:
-        return _against_plane(m, touch, (first, last, a), _NOWHERE, n, walls[-1 - b, 3], curve)
+        return against_plane(m, touch, (first, last, a), _NOWHERE, n, walls[-1 - b, 3], curve)
     if pairs[c, FEATURE] == FIELD:
         one, two = _shares(m, touch, a, b, n)
         touch.slots[last, DEPTH] = touch.slots[last, AREA] = 0.0
@@ -73,8 +72,8 @@ def measure(m, touch, c, n, apart):
         tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
     one, two = _shares(m, touch, a, b, n)
     one, two = tanks[c, SHARE] * one, tanks[c, SHARE] * two
-    total = _within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one), curve)
-    total += _within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two), curve)
+    total = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one), curve)
+    total += within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two), curve)
     if pairs[c, FEATURE] == CORES:
         return total + _between(m, touch, c, apart, total)
     return total + _cross(m, touch, by, c, n, tanks[c, SHARE] * _of_edges(touch, b))
@@ -98,7 +97,7 @@ def _spot(m, touch, c, n):
     x, y, z = three(m, body, POSITION)
     arm = sign * (m[body, HALF] - 0.5 * deep)
     x, y, z = x + by[0] + arm * n[0], y + by[1] + arm * n[1], z + by[2] + arm * n[2]
-    _set(slots, pairs[c, LAST], deep, spot_area((tanks[c, BEND], tanks[c, RADIUS]), deep), x, y, z)
+    note(slots, pairs[c, LAST], deep, spot_area((tanks[c, BEND], tanks[c, RADIUS]), deep), x, y, z)
 
 
 @kernel
@@ -124,89 +123,6 @@ def _shares(m, touch, a, b, n):
 
 
 @kernel
-def _watched(m, touch, b, slot, d):
-    """(point of body `b` watched by a slot, area that it shows towards `d` (3,), m2, or what of a side it stands for).
-
-    All in the body's frame; the last is told by a negative INDEX.
-    """
-    i = touch.marks[slot, INDEX]
-    if i < 0:
-        return on_side(touch.forms, b, -2 - i, d)
-    e = touch.elements[i]
-    if is_box(shape_of(m, b)):  # three faces in one element
-        area = max(e[3] * d[0], 0.0) + max(e[4] * d[1], 0.0) + max(e[5] * d[2], 0.0)
-    else:
-        area = max(e[3] * d[0] + e[4] * d[1] + e[5] * d[2], 0.0)
-    return (e[0], e[1], e[2]), area
-
-
-@kernel
-def _against_plane(m, touch, which, by, n, level, curve):
-    """Elements first to last of a body moved by `by` against a plane: `slots` and the area that touches, m2.
-
-    `which`: (first, last, body); a level of 1e9 m and more is touched by all, expected depth of what is round.
-    """
-    marks, slots = touch.marks, touch.slots
-    first, last, body = which
-    (cx, cy, cz), t = pose_of(m, body, by)
-    u, v, w = to_body(t, n[0], n[1], n[2])
-    height, total = n[0] * cx + n[1] * cy + n[2] * cz - level, 0.0
-    for slot in range(first, last):
-        (x, y, z), area = _watched(m, touch, body, slot, (-u, -v, -w))
-        deep = -(height + u * x + v * y + w * z)
-        if marks[slot, INDEX] < 0:
-            area *= _of_side(m, body, curve, min(deep, EXPECTED * curve[1]) if level > 1e8 else deep)
-        elif curve[0] != FLAT:
-            area = 0.0
-        x, y, z = to_global(t, x, y, z)
-        deep = deep if area > 0.0 else 0.0  # faces that look away feel nothing, nor have they a friction spring
-        _set(slots, slot, deep, area, cx + x, cy + y, cz + z)
-        total += area if deep > 0.0 else 0.0
-    slots[last, DEPTH] = slots[last, AREA] = 0.0
-    return total
-
-
-@kernel
-def _of_side(m, body, curve, deep):
-    """What a point along the curved side of a body stands for, m2 or m2/m; lines that cross have a spot."""
-    return spot_area(curve, deep) if touches_along_a_line(shape_of(m, body)) == (curve[0] == LINE) else 0.0
-
-
-@kernel
-def _set(slots, slot, deep, area, x, y, z):
-    slots[slot, DEPTH], slots[slot, AREA] = deep, area
-    slots[slot, POINT], slots[slot, POINT + 1], slots[slot, POINT + 2] = x, y, z
-
-
-@kernel
-def _within(m, touch, which, by, n, rim, curve):
-    """The same against another body, depths along `n`; the rim of the contact takes from their area.
-
-    `which`: (first, last, body, other); `by`: how far the two are moved.
-    """
-    marks, slots = touch.marks, touch.slots
-    first, last, body, other = which
-    (cx, cy, cz), t = pose_of(m, body, by[0])
-    (bx, by, bz), s = pose_of(m, other, by[1])
-    ramp, share = rim
-    u, v, w = to_body(t, n[0], n[1], n[2])
-    along, total = to_body(s, n[0], n[1], n[2]), 0.0
-    for slot in range(first, last):
-        (x, y, z), area = _watched(m, touch, body, slot, (-u, -v, -w))
-        x, y, z = to_global(t, x, y, z)
-        x, y, z = cx + x, cy + y, cz + z
-        deep, weight = depth(touch.forms, other, to_body(s, x - bx, y - by, z - bz), along, ramp)
-        if marks[slot, INDEX] < 0:
-            area *= _of_side(m, body, curve, deep)
-        elif curve[0] != FLAT:
-            area = 0.0
-        area = weight * share * area
-        _set(slots, slot, deep if area > 0.0 else 0.0, area, x, y, z)
-        total += area
-    return total
-
-
-@kernel
 def _cross(m, touch, by, c, n, share):
     """The crossing of two edges, where that is how the boxes touch: into the pair's last slot; its area."""
     pairs, slots = touch.pairs, touch.slots
@@ -217,7 +133,7 @@ def _cross(m, touch, by, c, n, share):
     apart = separation(m, touch.forms, a, b, by, feature)[0]
     x, y, z, area, meet = edge_crossing(m, a, b, by, feature, n)
     deep = max(-apart, 0.0) if meet else 0.0
-    _set(slots, slot, deep, share * area, x, y, z)
+    note(slots, slot, deep, share * area, x, y, z)
     return share * area if deep > 0.0 else 0.0
 
 
@@ -241,7 +157,7 @@ def _between(m, touch, c, apart, total):
         return 0.0
     _, (x, y, z) = between_cores(m, touch.forms, a, b, between(m, a, b, by))
     x, y, z = x + m[b, POSITION] + by[0], y + m[b, POSITION + 1] + by[1], z + m[b, POSITION + 2] + by[2]
-    _set(slots, slot, -apart, area - total, x, y, z)
+    note(slots, slot, -apart, area - total, x, y, z)
     return area - total
 
 
@@ -270,9 +186,9 @@ def show(m, touch, c, n, apart):
         _spot(m, touch, c, n)
         return slots[last, AREA]
     curve = tanks[c, BEND], tanks[c, RADIUS]
-    _against_plane(m, touch, (first, middle, a), _NOWHERE, n, far, curve)
+    against_plane(m, touch, (first, middle, a), _NOWHERE, n, far, curve)
     if b >= 0:
-        _against_plane(m, touch, (middle, last, b), by, (-n[0], -n[1], -n[2]), far, curve)
+        against_plane(m, touch, (middle, last, b), by, (-n[0], -n[1], -n[2]), far, curve)
         if pairs[c, FEATURE] == CORES:
             _between(m, touch, c, min(apart, -tanks[c, DEEP], -1e-300), 0.0)
         elif pairs[c, FEATURE] != FIELD:
