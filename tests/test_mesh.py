@@ -302,3 +302,75 @@ def test_what_is_wrong_with_a_mesh_in_a_case_is_told(tmp_path, changes, said):
     (tmp_path / "case.toml").write_text(CASE)
     with pytest.raises(InputError, match=said):
         load(tmp_path / "case.toml", [f"bodies.floe.shape.{key}={value}" for key, value in changes.items()])
+
+
+@pytest.mark.parametrize("division", [17, 37, 64, 95, 125, 385])
+def test_no_row_of_a_field_leaks(tmp_path, division):
+    """Lines through edges of triangles and through diagonals of faces cross a surface once, rounding or not."""
+    file = written(tmp_path, box_of(), "a.ply")
+    shape = MeshShape(kind="mesh", file=str(file), resolution=0.08 / division)
+    field, half = shape.field, np.array(SIZE) / 2.0
+    place = np.stack(np.meshgrid(*(s + field.step * np.arange(n) for s, n in zip(
+        field.start, field.value.shape, strict=True)), indexing="ij"), -1)  # fmt: skip
+    over = (np.abs(place) - half).max(axis=-1)
+    clear = np.abs(over) > 1e-8
+    assert ((field.value < 0.0) == (over < 0.0))[clear].all()
+
+
+@pytest.mark.parametrize("offset", [1e3, 1e5, 5e6])
+def test_a_mesh_may_lie_far_from_its_origin(tmp_path, offset):
+    """As from a map; its file has nine decimals."""
+    file = tmp_path / "far.obj"
+    surface = box_of((0.8, 0.6, 0.4), (offset, 2.0 * offset, 0.1 * offset))
+    lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in surface.vertices]
+    file.write_text("\n".join([*lines, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in surface.faces)]))
+    mesh = read(file, 1.0)
+    exact = np.array(BoxShape(size=(0.8, 0.6, 0.4)).inertia(1.0)) * 0.192
+    assert mesh.moments == pytest.approx(exact, rel=1e-6 + 1e-12 * offset)
+    assert mesh.turn == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-6)
+
+
+def test_a_skin_given_beside_its_cells_counts_once_and_other_cells_are_refused(tmp_path):
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], float)
+    skin = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)])
+    meshio.Mesh(points, [("triangle", skin), ("tetra", np.array([[0, 1, 2, 3]]))]).write(tmp_path / "a.vtu")
+    assert read(tmp_path / "a.vtu", 1.0).volume == pytest.approx(1.0 / 6.0)
+    parts = [("tetra", np.array([[0, 1, 2, 3]])), ("tetra", np.array([[1, 2, 3, 4]]))]
+    meshio.Mesh(points, parts).write(tmp_path / "b.vtu")
+    assert len(read(tmp_path / "b.vtu", 1.0).triangles) == 6, "blocks that share a face"
+    meshio.Mesh(points, [("pyramid", np.array([[0, 1, 2, 3, 4]]))]).write(tmp_path / "c.vtu")
+    with pytest.raises(
+        InputError, match="has cells of the kind pyramid; allowed are triangle, quad, tetra, hexahedron"
+    ):
+        read(tmp_path / "c.vtu", 1.0)
+
+
+@pytest.mark.parametrize(("make", "said"), [
+    (lambda: trimesh.util.concatenate([box_of(), box_of(at=(0.02, 0.01, 0.01))]), "pieces of it overlap"),
+    (lambda: box_of((1.0, 1.0, 0.004)), "too thin for a field; its thinnest side must be a 200th"),
+])  # fmt: skip
+def test_what_a_field_cannot_hold_is_told(tmp_path, make, said):
+    shape = MeshShape(kind="mesh", file=str(written(tmp_path, make())))
+    assert any(said in text for text in shape.faults(False)), list(shape.faults(False))
+    assert not list(MeshShape(kind="mesh", file=str(written(tmp_path, box_of((1.0, 1.0, 0.02))))).faults(False))
+
+
+def test_pieces_that_touch_along_an_edge_are_refused(tmp_path):
+    pair = trimesh.util.concatenate([box_of(), box_of(at=(SIZE[0], SIZE[1], 0.0))])
+    with pytest.raises(InputError, match="1 of 35 edges belong to more than two triangles"):
+        read(written(tmp_path, pair), 1.0)
+
+
+def test_a_file_that_has_changed_is_another_body(tmp_path):
+    """The completed case knows its contents, and paths count from the case also where they are set."""
+    written(tmp_path, box_of(), "floe.stl")
+    written(tmp_path, box_of((0.06, 0.06, 0.04)), "other.stl")
+    (tmp_path / "case.toml").write_text(CASE)
+    found = load(tmp_path / "case.toml", ["bodies.floe.shape.file=other.stl"])
+    assert found.bodies[0].shape.half[0] == pytest.approx(0.03)
+    completed = tmp_path / "out.toml"
+    completed.write_text(found.to_toml())
+    load(completed)
+    written(tmp_path, box_of((0.05, 0.06, 0.04)), "other.stl")
+    with pytest.raises(InputError, match="has changed; its SHA-256 is not"):
+        load(completed)

@@ -164,3 +164,40 @@ def test_what_has_left_the_box_is_tied_no_more(joint):
     go(body, contacts, 1e-3, 5, time=0.005)
     assert np.array_equal(body.position, place) and contacts.elastic_energy() == 0.0
     assert math.isfinite(contacts.driven_work) and not body.spring_load.any()
+
+
+@LAWS
+@pytest.mark.parametrize(("stiffness", "height"), [(2e4, 0.00005), (4e5, 0.05)])
+def test_no_spring_pulls_a_body_through_a_wall(law, stiffness, height):
+    """From rest, in one step of the water; energy stays what it was."""
+    rope = spring(to=(0.5, 0.5, -0.5), stiffness=stiffness, length=0.45)
+    body = Bodies(boxes(HALF), [MASS], [(0.5, 0.5, HALF[2] + height)], names=["a"], joints=[rope])
+    contacts = Contacts(body, case(law=law, young=1e9))
+    before = budget(body, contacts)
+    for step in range(60):
+        go(body, contacts, 1e-3, 1, time=1e-3 * step)
+        assert body.position[0, 2] > HALF[2] - 0.005
+        assert budget(body, contacts) == pytest.approx(before, rel=0.03)
+
+
+def test_gravity_that_grows_does_no_work_on_what_has_left():
+    bodies = Bodies(boxes(HALF, HALF), [MASS] * 2, [(0.5, 0.5, 0.5), (0.5, 0.5, -5.0)])
+    contacts = Contacts(bodies, case(walls=(), ramp=0.1))
+    go(bodies, contacts, 1e-3, 5)
+    bodies.take_out(np.zeros(3), np.ones(3), 0.005)
+    before = contacts.driven_work
+    go(bodies, contacts, 1e-3, 5, time=0.005)
+    assert abs(contacts.driven_work - before) < 1.0
+
+
+def test_a_fixed_body_under_many_takes_no_more_steps_than_under_one():
+    steps = []
+    for count in (1, 5):
+        places = [(0.5, 0.5, -0.01), *((0.2 + 0.15 * k, 0.5, HALF[2] + 1e-6) for k in range(count))]
+        bodies = Bodies(
+            boxes((0.5, 0.5, 0.01), *[HALF] * count), [1.0, *[MASS] * count], places, fixed=[True, *[False] * count]
+        )
+        contacts = Contacts(bodies, case(walls=()))
+        go(bodies, contacts, 1e-3, 20)
+        steps.append(contacts.steps)
+    assert steps[1] <= 1.2 * steps[0]

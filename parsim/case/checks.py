@@ -66,7 +66,9 @@ def doubts(case):
 def _completed(case):
     """(`case` with the values filled in that depend on other keys, messages)."""
     floated, faults = [], []
-    for body in repeats.every(case):
+    for given in repeats.every(case):
+        shape = given.shape.completed()
+        body = given if shape is given.shape else given.model_copy(update={"shape": shape})
         try:
             floated.append(_floated(case, body) if body.position[2] == "float" else body)
         except ValueError as error:

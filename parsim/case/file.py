@@ -16,7 +16,7 @@ def read(path, inside=()):
     if path.resolve() in inside:
         raise InputError(f"{path}: extends = loops: " + " -> ".join(p.name for p in (*inside, path)))
     data = _parsed(path)
-    _locate(data, path.parent)
+    locate(data, path.parent)
     parent = data.pop("extends", None)
     if parent is None:
         return data
@@ -25,7 +25,7 @@ def read(path, inside=()):
     return _merged(read(path.parent / parent, (*inside, path.resolve())), data)
 
 
-def _locate(data, folder):
+def locate(data, folder):
     """Make the paths of files that bodies name whole: they count from where the case is."""
     bodies = data.get("bodies")
     for body in bodies if isinstance(bodies, list) else ():

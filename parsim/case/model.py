@@ -14,7 +14,7 @@ from pydantic import Field
 from parsim.boundary.sides import OPEN, WALL, Side
 from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
-from parsim.case.file import read, replaced, written
+from parsim.case.file import locate, read, replaced, written
 from parsim.case.messages import validated
 from parsim.case.output import Output, Report
 from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
@@ -212,7 +212,9 @@ def load(path, overrides=()):
     `overrides` are texts "key.path=value", list entries addressed by number or by name (bodies.A1.density=900).
     Raises InputError with every fault found.
     """
-    return parse(replaced(read(Path(path)), overrides))
+    data = replaced(read(Path(path)), overrides)
+    locate(data, Path(path).parent)
+    return parse(data)
 
 
 def parse(data):

@@ -135,7 +135,18 @@ def _crossing(y, z, a, b, c):
 
 @kernel
 def _side(y, z, p, q):
-    """(1 or -1, on which side of the edge from p to q a point of the y-z plane lies, 0: nowhere; twice the area)."""
+    """(1 or -1, on which side of the edge from p to q a point of the y-z plane lies, 0: nowhere; twice the area).
+
+    An edge and the same gone along the other way have sides that differ in their sign alone, rounding included.
+    """
+    if q[1] < p[1] or (q[1] == p[1] and q[2] < p[2]):
+        sign, area = _side_of(y, z, q, p)
+        return -sign, -area
+    return _side_of(y, z, p, q)
+
+
+@kernel
+def _side_of(y, z, p, q):
     area = (q[1] - p[1]) * (z - p[2]) - (q[2] - p[2]) * (y - p[1])
     if area > 0.0:
         return 1, area

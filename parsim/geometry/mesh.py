@@ -13,6 +13,7 @@ _SOLID = {
     "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
     "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
 }  # sides of cells, anticlockwise seen from outside
+_SURFACE, _LESS = ("triangle", "quad"), ("vertex", "line")
 _SAME = 1e-9  # of its size, by which corners may differ that are one
 
 
@@ -40,9 +41,13 @@ def read(path, scale):
         raise InputError(f"{path}: no such file") from None
     except (OSError, ValueError, KeyError, IndexError, TypeError, SystemExit) as error:
         raise InputError(f"{path}: cannot be read as {kind}: {error}") from None
-    if not len(triangles) or not np.isfinite(points).all():
-        raise InputError(f"{path}: holds no triangles" if not len(triangles) else f"{path}: holds what is no number")
-    return _placed(*_joined(scale * points, triangles), path)
+    if not np.isfinite(points).all():
+        raise InputError(f"{path}: holds what is no number")
+    if len(triangles):
+        points, triangles = _joined(scale * points, triangles)
+    if not len(triangles):
+        raise InputError(f"{path}: holds no triangles")
+    return _placed(points, triangles, path)
 
 
 def _of_surface(path, kind):
@@ -52,22 +57,27 @@ def _of_surface(path, kind):
 
 
 def _of_cells(path):
-    """Surface cells, and of solid cells the sides that only one has, as triangles."""
-    mesh, out = meshio.read(path), [np.zeros((0, 3), int)]
-    for cells in mesh.cells:
-        sides = [cells.data] if cells.type in ("triangle", "quad") else []
-        sides += [cells.data[:, corners] for corners in _SOLID.get(cells.type, ())]
-        if sides:
-            sides = np.concatenate(sides)
-            _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
-            sides = sides[np.sort(first[count == 1])]
-            out += [sides[:, [0, k, k + 1]] for k in range(1, sides.shape[1] - 1)]
+    """Of solid cells the sides that only one has, or surface cells where there are none, as triangles."""
+    mesh = meshio.read(path)
+    strange = sorted({cells.type for cells in mesh.cells} - {*_SOLID, *_SURFACE, *_LESS})
+    if strange:
+        raise InputError(f"{path}: has cells of the kind {strange[0]}; allowed are {', '.join((*_SURFACE, *_SOLID))}")
+    solid, out = [cells for cells in mesh.cells if cells.type in _SOLID], [np.zeros((0, 3), int)]
+    sides = [cells.data[:, corners] for cells in solid for corners in _SOLID[cells.type]]
+    sides = sides or [cells.data for cells in mesh.cells if cells.type in _SURFACE]
+    for width in {each.shape[1] for each in sides}:
+        every = np.concatenate([each for each in sides if each.shape[1] == width])
+        _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+        every = every[np.sort(first[count == 1])]
+        out += [every[:, [0, k, k + 1]] for k in range(1, width - 1)]
     return np.array(mesh.points, float), np.concatenate(out)
 
 
 def _joined(points, triangles):
     """The same with corners in one place made one, and without triangles that have lost their area."""
     size = np.ptp(points, axis=0).max()
+    if size == 0.0:
+        return points, triangles[:0]
     _, first, same = np.unique(np.round(points / (_SAME * size)), axis=0, return_index=True, return_inverse=True)
     triangles = same.reshape(-1)[triangles]
     whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
@@ -91,17 +101,25 @@ def _placed(points, triangles, path):
             f"{len(count)} edges, first at {_at(points, edges, inverse, int(np.argmax(there != back)))} m; make its "
             "normals consistent"
         )
-    surface = trimesh.Trimesh(points, triangles, process=False)
-    volume = float(surface.volume)
+    if (count > 2).any():
+        raise InputError(
+            f"{path}: {int((count > 2).sum())} of {len(count)} edges belong to more than two triangles, the first at "
+            f"{_at(points, edges, inverse, int(np.argmax(count > 2)))} m; its pieces may not touch"
+        )
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    points = points - middle  # far from the origin moments would be differences of large numbers
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    volume = float((a * np.cross(b, c)).sum() / 6.0)
     if volume < 0.0:
         raise InputError(f"{path}: its faces are turned in, its volume is {volume:.4g} m3; flip its normals")
-    if volume == 0.0:
+    if not volume > 1e-12 * np.ptp(points, axis=0).max() ** 3:
         raise InputError(f"{path}: has no volume")
+    surface = trimesh.Trimesh(points, triangles, process=False)
     centre = np.array(surface.center_mass)
     moments, axes = np.linalg.eigh(_exact_zeros(np.array(surface.moment_inertia)))
     axes = _nearest_axes(axes)
     moments = np.array([axes[:, k] @ surface.moment_inertia @ axes[:, k] for k in range(3)])
-    return Mesh((points - centre) @ axes, triangles, volume, moments, _quaternion(axes), centre)
+    return Mesh((points - centre) @ axes, triangles, volume, moments, _quaternion(axes), centre + middle)
 
 
 def _exact_zeros(tensor):

@@ -31,9 +31,9 @@ from parsim.solid.search import (
 )
 from parsim.solid.shapes import elements_of
 from parsim.solid.shapes.forms import forms_of
-from parsim.solid.springs import held_by_springs
+from parsim.solid.springs import hasten, held_by_springs
 from parsim.solid.substeps import advance, elastic
-from parsim.solid.tanks import KEPT, SHEAR, recall_tanks, room_for_tanks
+from parsim.solid.tanks import KEPT, recall_tanks, room_for_tanks
 
 _OVERLAP = 0.01  # of the least width of a body, above which it is doubtful
 _SHARE = 0.1  # of the smallest edge that a body may move in one step
@@ -161,6 +161,8 @@ class Contacts:
             m[row, table.VELOCITY + 2] = plate.velocity(time)
         begin(m, _pose(bodies), bodies.mass, held, bodies.water_load, self._gravity, bodies.planar, bodies.gravity_load)
         self._tie(bodies, time, dt)
+        if len(bodies.springs):
+            hasten(m, bodies.springs, dt)
         number, reach, forgotten = self._list_pairs(bodies.planar, dt)
         return number, self._list_slots(number, reach), reach, forgotten
 
@@ -180,7 +182,8 @@ class Contacts:
         """Count half the work of gravity that grows over a step: asked before it and after."""
         less = np.subtract(self._gravity_at(time), self._gravity_at(time + dt))
         if less.any():
-            self.driven_work += 0.5 * float((self.bodies.mass[:, None] * self.bodies.position * less).sum())
+            there = np.where(self.bodies.gone, 0.0, self.bodies.mass)
+            self.driven_work += 0.5 * float((there[:, None] * self.bodies.position * less).sum())
 
     def _tied_now(self):
         """Momentum (k, 6), kg m/s, kg m2/s, of the bodies that react to joints, and place (d, 3), m, and energy, J, of
@@ -250,7 +253,7 @@ class Contacts:
     def _remember(self, number, count):
         if not count and not len(self._key) and not len(self._pair):
             return
-        at = np.flatnonzero(self._tanks[:number, : SHEAR + 1].any(axis=1))
+        at = np.flatnonzero(self._tanks[:number, :KEPT].any(axis=1))
         self._pair, self._stored = self._pairs[at, KEY], self._tanks[at, :KEPT]
         at = np.flatnonzero(self._marks[:count, TOUCHING])
         self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]

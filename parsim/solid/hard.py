@@ -18,7 +18,7 @@ from parsim.solid.points import points_of
 from parsim.solid.search import FEATURE, STRETCH, TOUCHING, A, B
 from parsim.solid.separation import FIELD
 from parsim.solid.shapes.kernels import touches_at_one_point
-from parsim.solid.springs import pull_springs, rate_springs
+from parsim.solid.springs import STEPS, pull_springs, rate_springs
 from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SPIN, SWING, VELOCITY, shape_of, three
 from parsim.solid.touch import normal_of
 
@@ -43,7 +43,7 @@ def advance_hard(m, touch, number, dt, law, steps_per_swing):
     lost, work, cuts, rest, left, touching, meetings = 0.0, 0.0, 0, dt, 0.0, 0, 0
     rate_springs(m, touch, dt)
     lies, rate = _LIES * _gains(m, dt), np.max(m[:, SWING])
-    longest = math.pi / (steps_per_swing * math.sqrt(rate)) if rate > 0.0 else dt
+    longest = math.pi / (STEPS * steps_per_swing * math.sqrt(rate)) if rate > 0.0 else dt
     while rest > 0.0:
         span = rest / math.ceil(rest / longest)
         if meetings < _MEETINGS:

@@ -3,7 +3,7 @@
 import math
 
 from parsim.machine.jit import kernel
-from parsim.solid.table import GIVEN, HELD, INVERSE, LIGHT, RADIUS, ROLE, SPIN, VELOCITY, three
+from parsim.solid.table import GIVEN, HASTE, HELD, INVERSE, LIGHT, RADIUS, ROLE, SPIN, VELOCITY, three
 
 
 @kernel
@@ -18,7 +18,12 @@ def speed_of(m, b, dt):
     inverse = three(m, b, INVERSE)
     faster = dt * length(three(m, b, GIVEN + 3)) * max(inverse[0], inverse[1], inverse[2])
     spin = length(three(m, b, SPIN)) + faster
-    return length(three(m, b, VELOCITY)) + dt * length(three(m, b, GIVEN)) * m[b, LIGHT] + m[b, RADIUS] * spin
+    return (
+        m[b, HASTE]
+        + length(three(m, b, VELOCITY))
+        + dt * length(three(m, b, GIVEN)) * m[b, LIGHT]
+        + m[b, RADIUS] * spin
+    )
 
 
 @kernel

@@ -1,13 +1,30 @@
 """Springs from bodies to points and lines of the world: moorings, booms. Rows of `springs`: see `ties.Joints`."""
 
+import math
+
 from parsim.geometry.rotation import to_global
 from parsim.machine.jit import kernel
 from parsim.solid.speeds import length, speed_of
-from parsim.solid.table import INVERSE, LIGHT, LOAD, LOSS, POSITION, PULL, SPIN, SWING, VELOCITY, three, turn_at
+from parsim.solid.table import (
+    HASTE,
+    INVERSE,
+    LIGHT,
+    LOAD,
+    LOSS,
+    POSITION,
+    PULL,
+    RADIUS,
+    SPIN,
+    SWING,
+    VELOCITY,
+    three,
+    turn_at,
+)
 
 BODY, AT, FROM, TO, STIFFNESS, DAMPING, LENGTH, SLACK = 0, 1, 4, 7, 10, 11, 12, 13
 _NONE, _X, _Y, _Z = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _STEEPEST = 100.0  # times its stiffness that a spring pressed to almost nothing acts across
+STEPS = 4  # times those of a contact, in half a swing: sub-steps change as contacts come and go, and that makes energy
 _MARGIN = 1.5  # a body that is hit may become faster
 
 
@@ -75,6 +92,18 @@ def held_by_springs(m, springs):
         more = _stretched(m, springs, k)[2]
         energy += 0.5 * springs[k, STIFFNESS] * more * more
     return energy
+
+
+@kernel
+def hasten(m, springs, dt):
+    """Set HASTE of all bodies for the next `dt`, s: the speed that its energy gives, or its force in that time."""
+    m[:, HASTE] = 0.0
+    for k in range(len(springs)):
+        b, (arm, _, away) = int(springs[k, BODY]), _stretched(m, springs, k)
+        turning = max(m[b, INVERSE], m[b, INVERSE + 1], m[b, INVERSE + 2])
+        wide = max(length(arm), m[b, RADIUS])
+        soft, more = m[b, LIGHT] + wide * wide * turning, abs(away)
+        m[b, HASTE] += more * min(dt * springs[k, STIFFNESS] * soft, math.sqrt(springs[k, STIFFNESS] * soft))
 
 
 @kernel

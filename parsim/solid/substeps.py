@@ -13,7 +13,7 @@ from parsim.solid.laws.foundation import FOUNDATION
 from parsim.solid.motion import alone, answer, drift, drift_involved, kick_involved, loads_on
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
 from parsim.solid.separation import BALLS, FIELD, ROUND_A, overlap_share, ramp_of
-from parsim.solid.springs import held_by_springs, rate_springs
+from parsim.solid.springs import STEPS, held_by_springs, rate_springs
 from parsim.solid.table import DRIVEN, POSITION, QUATERNION, RATE, ROLE, SWING, three
 from parsim.solid.tanks import LAPSE, SHARE, SHEAR, STORED, restrain
 from parsim.solid.touch import centre_of, measure, normal_of, show
@@ -108,7 +108,7 @@ def _longest(m, touch, island, steps_per_contact, reach):
     largest sum bounds its eigenvalues (Gershgorin) and with whole pairs those of chains. Pairs at rest on each other
     need only be stable: they take _AT_REST steps.
     """
-    (rows, _, which), at_rest = island, min(steps_per_contact, _AT_REST)
+    (rows, own, which), at_rest = island, min(steps_per_contact, _AT_REST)
     for b in rows:
         m[b, RATE] = m[b, RATE + 1] = m[b, RATE + 2] = 0.0
     rate_balls(m, touch, which, (steps_per_contact, at_rest))
@@ -116,10 +116,10 @@ def _longest(m, touch, island, steps_per_contact, reach):
         if touch.pairs[c, FEATURE] != BALLS:
             _rate_pair(m, touch, c, (steps_per_contact, at_rest), reach)
     largest, swing = 0.0, 0.0
-    for b in rows:
+    for b in rows[:own]:
         largest = max(largest, m[b, RATE], m[b, RATE + 1], m[b, RATE + 2])
         swing = max(swing, m[b, SWING])
-    largest += swing * steps_per_contact * steps_per_contact
+    largest += swing * (STEPS * steps_per_contact) ** 2
     return (math.pi / math.sqrt(largest) if largest > 0.0 else math.inf), swing > 0.0
 
 

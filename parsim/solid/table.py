@@ -23,7 +23,8 @@ FREE = 76  # 1 where it may move along x, y, z and turn about them
 ROD = 82  # pivot and length of the rod that it hangs by, 0 if by none
 PULL, TIED = 86, 92  # force and torque of its springs to the world; their impulse
 RATE, SWING = 98, 101  # bounds of the squares of its frequencies, 1/s2: along the axes by contacts; by its springs
-WIDTH = 102
+HASTE = 102  # bound of the speed that its springs may give it in a step
+WIDTH = 103
 
 HELD, DRIVEN, ALONE, INVOLVED = 0, 1, 2, 3  # roles: at rest; moves as given; free, touches nothing now; may touch
 

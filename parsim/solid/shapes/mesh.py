@@ -4,6 +4,7 @@ What takes long to import is imported where a mesh is read.
 """
 
 import functools
+import hashlib
 from pathlib import Path
 from typing import Literal
 
@@ -17,7 +18,9 @@ from parsim.solid.shapes.shape import ShapeTable
 from parsim.solid.shapes.surface import volume_under
 
 _NODES = 64  # of the field along its longest side, where nothing else is asked for
+_ACROSS = 4  # of them across its shortest side, if that is more
 _MOST = 400  # of them at most
+_CLOSE = 0.1  # share of its volume that the field may be off
 _LEAST_SHARE = 0.1  # of a lattice point that a sample stands for; what is less goes to its neighbours
 
 
@@ -30,22 +33,29 @@ class MeshShape(ShapeTable):
     file: str = Field(description="STL, OBJ, PLY or VTU; a path from where the case is, any origin")
     scale: Moderate = Field(1.0, description="length, m, of one unit of the file: 0.001 for millimetres")
     resolution: Moderate | None = Field(
-        None, description="distance between the nodes of its signed-distance field, m; left out: longest side / 64"
+        None, description="distance between the nodes of its field, m; left out: a 64th of its longest side"
     )
+
+    digest: str | None = Field(None, description="SHA-256 of the file, noted when the case is completed")
 
     @property
     def _mesh(self):
-        return _read(self.file, self.scale)
+        return _read(self.file, _mark(self.file), self.scale)
 
     @property
     def field(self):
         """Its signed distances: `geometry.field.Field`."""
-        return _field(self.file, self.scale, self.step)
+        return _field(self.file, _mark(self.file), self.scale, self.step)
 
     @property
     def step(self):
         """Distance between the nodes of its field, m."""
-        return self.resolution or float(np.ptp(self._mesh.points, axis=0).max()) / _NODES
+        sides = np.ptp(self._mesh.points, axis=0)
+        return self.resolution or float(max(min(sides.max() / _NODES, sides.min() / _ACROSS), sides.max() / _MOST))
+
+    def completed(self):
+        """See `ShapeTable`."""
+        return self if self.digest else self.model_copy(update={"digest": _digest(self.file, _mark(self.file))})
 
     @property
     def turn(self):
@@ -75,9 +85,23 @@ class MeshShape(ShapeTable):
         except InputError as error:
             yield f"shape.file: {error}"
             return
-        if self.step > 0.5 * sides.min() or self.step < sides.max() / _MOST:
-            low, high = sides.max() / _MOST, 0.5 * sides.min()
+        low, high = sides.max() / _MOST, 0.5 * sides.min()
+        if low > high:
+            yield f"{self.told()}: too thin for a field; its thinnest side must be a {_MOST // 2}th of its longest"
+        elif not low <= self.step <= high:
             yield f"shape.resolution = {self.resolution}: must be between {low:.4g} and {high:.4g} m for this mesh"
+        elif abs(self._inside() / self.volume - 1.0) > _CLOSE:
+            yield (
+                f"{self.told()}: its field, {self.step:.4g} m between nodes, encloses {self._inside():.4g} m3, its "
+                f"triangles {self.volume:.4g}; pieces of it overlap, or shape.resolution must be finer than its walls"
+            )
+        if self.digest and self.digest != _digest(self.file, _mark(self.file)):
+            yield f'shape.file = "{self.file}": has changed; its SHA-256 is not {self.digest[:12]}... any more'
+
+    def _inside(self):
+        """Volume, m3, inside by its field."""
+        share = np.clip(0.5 - self.field.value / self.step, 0.0, 1.0)
+        return float(share.sum() * self.step**3)
 
     def hint(self, room):
         """See `ShapeTable`."""
@@ -153,18 +177,35 @@ def flat(field):
     return field.value.ravel(), np.array([0.0, *field.value.shape, field.step, *field.start])
 
 
+def _mark(file):
+    """What tells whether a file has been written anew."""
+    try:
+        told = Path(file).stat()
+    except OSError:
+        return None
+    return told.st_mtime_ns, told.st_size
+
+
 @functools.cache
-def _read(file, scale):
+def _digest(file, mark):
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
+@functools.cache
+def _read(file, mark, scale):
     from parsim.geometry.mesh import read
 
     return read(Path(file), scale)
 
 
 @functools.cache
-def _field(file, scale, step):
+def _field(file, mark, scale, step):
     from parsim.geometry.field import field_of
 
-    mesh = _read(file, scale)
+    mesh = _read(file, mark, scale)
     return field_of(mesh.points, mesh.triangles, step)
 
 

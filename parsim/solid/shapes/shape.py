@@ -44,6 +44,10 @@ class ShapeTable(Table):
         """What is wrong with it: messages."""
         raise NotImplementedError
 
+    def completed(self):
+        """The same with what is noted when a case is completed."""
+        return self
+
     def hint(self, room):
         """What may be wrong where it does not fit into the room (3,), m: the end of a message."""
         return ""
