@@ -14,7 +14,7 @@ def length(v):
 
 @kernel
 def speed_of(m, b, dt):
-    """Bound of the speed of any point of body `b` within `dt`, s, without contacts, m/s; `springs.hasten` was called."""
+    """Bound of the speed of any point of body `b` within `dt`, s, without contacts, m/s, its HASTE known."""
     inverse = three(m, b, INVERSE)
     faster = dt * length(three(m, b, GIVEN + 3)) * max(inverse[0], inverse[1], inverse[2])
     spin = length(three(m, b, SPIN)) + faster
