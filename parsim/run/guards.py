@@ -90,7 +90,8 @@ def _likely(simulation):
     if 0.0 < case.speed < s.speed < s.scheme.sound:
         signs.append(f"{speed}: {s.speed:.4g} m/s in the step before")
     if b.names:
-        kick = np.sqrt((b.contact_load[:, :3] ** 2).sum(1)) / b.mass * s.dt
+        with np.errstate(invalid="ignore"):  # the run has gone wrong: loads may be no numbers
+            kick = np.sqrt((b.contact_load[:, :3] ** 2).sum(1)) / b.mass * s.dt
         if (hit := int(np.argmax(kick))) >= 0 and kick[hit] > _HARD * s.scheme.sound:
             force = math.sqrt((b.contact_load[hit, :3] ** 2).sum())
             signs.append(
