@@ -110,7 +110,10 @@ def held(bodies, contacts):
 
 
 def meets_and_keeps(seed, law, steps=60, more=1e-6):
-    """Draw a pair and check it, energy to a share `more`; how deep the two were in each other at most, over the smaller one's width."""
+    """Draw a pair and check it, energy to a share `more`.
+
+    Returns how deep the two were in each other at most, over the smaller one's width.
+    """
     bodies, contacts, until = pair(np.random.default_rng(seed), law)
     start, before, deepest = held(bodies, contacts), momenta(bodies), 0.0
     size, taken = np.abs(before[0]).max() + bodies.mass.max() * np.abs(bodies.velocity).max(), 0
