@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from mesh_cases import box_of, written
 
 import parsim
 from parsim.__main__ import main
@@ -86,3 +87,18 @@ def test_too_many_ranks_are_refused_with_the_number_that_fits(mpirun, tmp_path):
     assert done.returncode == 2
     assert "use at most" in done.stderr and done.stderr.count("error:") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.long
+def test_every_shape_and_joint_has_the_same_bits(mpirun, tmp_path, capsys):
+    """On one rank, on three, and in two pieces on two and one."""
+    case = tmp_path / "case.toml"
+    case.write_text((HERE / "same_bits_shapes.toml").read_text())
+    written(tmp_path, box_of((0.04, 0.03, 0.02)), "box.ply")
+    for ranks, out, until in ((1, "one", "0.15"), (3, "three", "0.15"), (2, "pieces", "0.08")):
+        assert mpirun(ranks, ["run", case, "-o", tmp_path / out, "--until", until], timeout=240).returncode == 0
+    assert mpirun(1, ["resume", tmp_path / "pieces", "--until", "0.15"], timeout=240).returncode == 0
+    loads = parsim.open(tmp_path / "one").series("loads")
+    assert {"contact", "joint"} <= set(loads["kind"])
+    for out in ("three", "pieces"):
+        assert main(["compare", str(tmp_path / "one"), str(tmp_path / out)]) == 0, capsys.readouterr().out
