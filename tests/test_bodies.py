@@ -5,11 +5,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from contact_cases import boxes
+from contact_cases import boxes, case, go
 
 from parsim.case.places import rotation
 from parsim.geometry.rotation import from_angles, matrices
 from parsim.solid.bodies import Bodies, from_case
+from parsim.solid.contacts import Contacts
 from parsim.solid.shapes import BoxShape
 
 INERTIA = (1.0, 2.0, 3.0)
@@ -168,3 +169,16 @@ def test_the_metre_across_a_plane_does_not_count_as_a_radius():
     reach = [np.hypot(0.01, 0.02), np.sqrt(0.01**2 + 0.5**2 + 0.02**2)]
     assert [box.surface_speed() for box in made] == pytest.approx(30.0 * np.array(reach))
     assert [box.surface_acceleration() for box in made] == pytest.approx(900.0 * np.array(reach))
+
+
+@pytest.mark.long
+def test_a_rotor_keeps_its_energy_for_a_hundred_thousand_steps():
+    """Tumbling about the middle axis: bounded by the square of the step, without drift."""
+    body = Bodies([BoxShape(size=(0.08, 0.06, 0.02))], [1.0], [(0.5, 0.5, 0.5)], spin=[(0.3, 5.0, 0.2)])
+    contacts, energy = Contacts(body, case(gravity=(0.0, 0.0, 0.0), walls=())), []
+    for step in range(100_000):
+        go(body, contacts, 1e-3, 1, time=1e-3 * step)
+        energy.append(body.kinetic_energy())
+    error = np.array(energy) / energy[0] - 1.0
+    assert np.abs(error).max() < 4e-7
+    assert abs(error[-20_000:].mean() - error[:20_000].mean()) < 1e-8

@@ -190,3 +190,55 @@ def test_a_law_is_chosen_in_the_case():
             load(name, [f"contacts.law={wrong}"])
     with pytest.raises(InputError, match="contacts.law.stiffness: belongs to kind = 'spring'; allowed: kind, depth"):
         load(name, ["contacts.law={stiffness=1e5}"])
+
+
+@pytest.mark.parametrize("law", LAWS_HERE, ids=lambda law: law.kind)
+@pytest.mark.parametrize(("half", "elements"), [(0.05, 9), (0.0026, 441)])
+def test_a_face_rebounds_by_its_restitution_however_many_elements_it_has(law, half, elements):
+    block = Bodies(boxes((0.05, 0.05, half)), [1.0], [(0.5, 0.5, half + 1e-4)], velocity=[(0.0, 0.0, -SPEED)])
+    contacts, most = Contacts(block, case(gravity=WEIGHTLESS, young=YOUNG, law=law, restitution=0.5)), 0
+    for step in range(4000):
+        go(block, contacts, 1e-4, 1, time=1e-4 * step)
+        most = max(most, contacts.count)
+        if most and not contacts.count:
+            break
+    assert most == elements
+    assert block.velocity[0, 2] / SPEED == pytest.approx(0.5, rel=0.002)
+
+
+def _rebounds(count):
+    """Apexes, m, of a damped Hertz ball dropped from 0.5 m, by its own equation and the method of Runge and Kutta."""
+    stiff, beta, v, out = 4.0 / 3.0 * HALF_SPACE * math.sqrt(0.05), damping_of(0.8), -math.sqrt(9.81), []
+
+    def rate(z, v):
+        hard = stiff * math.sqrt(max(-z, 0.0))
+        return v, max(-hard * z - 2.0 * beta * math.sqrt(1.25 * hard) * v, 0.0) - 9.81 if z < 0.0 else -9.81
+
+    for _ in range(count):
+        z, dt = 0.0, 1e-6
+        while z <= 0.0 or v < 0.0:
+            a = rate(z, v)
+            b = rate(z + 0.5 * dt * a[0], v + 0.5 * dt * a[1])
+            c = rate(z + 0.5 * dt * b[0], v + 0.5 * dt * b[1])
+            d = rate(z + dt * c[0], v + dt * c[1])
+            z += dt / 6.0 * (a[0] + 2.0 * b[0] + 2.0 * c[0] + d[0])
+            v += dt / 6.0 * (a[1] + 2.0 * b[1] + 2.0 * c[1] + d[1])
+        out.append(z + v * v / 19.62)
+        v = -math.sqrt(19.62 * out[-1])
+    return np.array(out)
+
+
+@pytest.mark.parametrize(("steps", "within"), [(20, 2.5e-3), (160, 5e-4)])
+def test_a_bouncing_ball_follows_its_own_equation(steps, within):
+    """Robb 2016, sec. 5.1, with the law "hertz": closer with more steps a contact."""
+    ball, before, apexes = Bodies([SphereShape(kind="sphere", diameter=0.1)], [1.0], [(0.5, 0.5, 0.55)]), 0.0, []
+    contacts = Contacts(ball, case(law=HERTZ, restitution=0.8, steps=steps, young=YOUNG))
+    for step in range(10000):
+        go(ball, contacts, 2e-4, 1, time=2e-4 * step)
+        speed, height = ball.velocity[0, 2], ball.position[0, 2] - 0.05
+        if before > 0.0 >= speed:
+            apexes.append(height + speed * speed / 19.62)
+        before = speed
+        if len(apexes) == 4:
+            break
+    assert apexes == pytest.approx(_rebounds(4), rel=within)
