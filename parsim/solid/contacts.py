@@ -119,6 +119,7 @@ class Contacts:
         """Energy, J, stored in the contacts at the present pose."""
         if not len(self.bodies):
             return 0.0
+        self._gravity = np.array(self._gravity_at(self._time))
         number, *_ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
         if self._hard:
             return float(held_by_springs(self._table, self.bodies.springs))
