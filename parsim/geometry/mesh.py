@@ -43,9 +43,10 @@ def read(path, scale):
         raise InputError(f"{path}: cannot be read as {kind}: {error}") from None
     if not np.isfinite(points).all():
         raise InputError(f"{path}: holds what is no number")
-    if len(triangles):
-        points, triangles = _joined(scale * points, triangles)
-    if not len(triangles):
+    size = scale * np.ptp(points, axis=0).max() if len(triangles) else 0.0
+    if size > 0.0:
+        points, triangles = joined(scale * points, triangles, _SAME * size)
+    if size == 0.0 or not len(triangles):
         raise InputError(f"{path}: holds no triangles")
     return _placed(points, triangles, path)
 
@@ -73,12 +74,9 @@ def _of_cells(path):
     return np.array(mesh.points, float), np.concatenate(out)
 
 
-def _joined(points, triangles):
-    """The same with corners in one place made one, and without triangles that have lost their area."""
-    size = np.ptp(points, axis=0).max()
-    if size == 0.0:
-        return points, triangles[:0]
-    _, first, same = np.unique(np.round(points / (_SAME * size)), axis=0, return_index=True, return_inverse=True)
+def joined(points, triangles, within):
+    """The same with corners that are `within` a distance, m, made one, and without triangles that have lost a side."""
+    _, first, same = np.unique(np.round(points / within), axis=0, return_index=True, return_inverse=True)
     triangles = same.reshape(-1)[triangles]
     whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     return points[first], triangles[whole]
@@ -142,38 +140,9 @@ def _nearest_axes(axes):
 
 def _quaternion(turn):
     """Quaternion (4,) of a rotation matrix (3, 3)."""
-    w, x, y, z = (np.sqrt(max(1.0 + turn[0, 0] * a + turn[1, 1] * b + turn[2, 2] * c, 0.0)) / 2.0 for a, b, c in (
-        (1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)))  # fmt: skip
-    most = int(np.argmax((w, x, y, z)))
-    if most == 0:
-        q = (
-            w,
-            (turn[2, 1] - turn[1, 2]) / (4 * w),
-            (turn[0, 2] - turn[2, 0]) / (4 * w),
-            (turn[1, 0] - turn[0, 1]) / (4 * w),
-        )
-    elif most == 1:
-        q = (
-            (turn[2, 1] - turn[1, 2]) / (4 * x),
-            x,
-            (turn[0, 1] + turn[1, 0]) / (4 * x),
-            (turn[0, 2] + turn[2, 0]) / (4 * x),
-        )
-    elif most == 2:
-        q = (
-            (turn[0, 2] - turn[2, 0]) / (4 * y),
-            (turn[0, 1] + turn[1, 0]) / (4 * y),
-            y,
-            (turn[1, 2] + turn[2, 1]) / (4 * y),
-        )
-    else:
-        q = (
-            (turn[1, 0] - turn[0, 1]) / (4 * z),
-            (turn[0, 2] + turn[2, 0]) / (4 * z),
-            (turn[1, 2] + turn[2, 1]) / (4 * z),
-            z,
-        )
-    return tuple(float(v) for v in q)
+    whole = np.eye(4)
+    whole[:3, :3] = turn
+    return tuple(float(v) for v in trimesh.transformations.quaternion_from_matrix(whole, isprecise=True))
 
 
 def _at(points, edges, inverse, edge):

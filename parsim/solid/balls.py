@@ -13,7 +13,8 @@ from parsim.solid.laws.kernels import stiffness
 from parsim.solid.laws.law import LINE, SPOT
 from parsim.solid.search import DEPTH, FEATURE, LAST, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import BALLS, gap_of_balls
-from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RATE, RUSH, SPIN, VELOCITY, three
+from parsim.solid.speeds import add_rate
+from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, three
 from parsim.solid.tanks import BEFORE, LAPSE, LOADS, LOSSES, NOW, SHEAR, SHEAR_BEFORE
 
 CALM = 0.25  # how far, over their depth, contacts at rest may still move
@@ -63,12 +64,18 @@ def _gap(m, walls, pairs, shift, c):
 
 
 @kernel
+def _radius(m, a, b):
+    """Radius, m, of ball a and ball b, or a wall, together."""
+    return m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF]) if b >= 0 else m[a, HALF]
+
+
+@kernel
 def _law(m, ab, deep, walls, law, number, planar):
     """(area, m2, radius, m, of what touches; force over area and depth; energy held over force times depth; damping
     ratio; friction; tangential over normal stiffness; rolling friction)."""
     a, b = ab
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
-    radius = m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF]) if b >= 0 else m[a, HALF]
+    radius = _radius(m, a, b)
     bend = LINE if planar else SPOT
     area = spot_area((bend, radius), deep)
     rigid, held, more = stiffness(number, law[0, one, two], area, bend, radius, deep)
@@ -171,16 +178,9 @@ def rate_balls(m, touch, which, steps):
         apart, n = _gap(m, touch.walls, pairs, touch.shift, c)
         if apart == math.inf:
             continue
-        radius = m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF]) if b >= 0 else m[a, HALF]
-        square = _square(m, touch, a, b, max(EXPECTED * radius, -apart))
+        square = _square(m, touch, a, b, max(EXPECTED * _radius(m, a, b), -apart))
         many = steps[1] if apart < 0.0 and _calm(m, touch, a, b, -apart, n) else steps[0]
-        square *= many * many
-        u, v, w = abs(n[0]), abs(n[1]), abs(n[2])
-        for body in (a, b):
-            if body >= 0:
-                m[body, RATE] += square * u * (u + v + w)
-                m[body, RATE + 1] += square * v * (u + v + w)
-                m[body, RATE + 2] += square * w * (u + v + w)
+        add_rate(m, a, b, n, square * (many * many))
 
 
 @kernel

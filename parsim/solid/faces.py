@@ -42,7 +42,7 @@ def against_plane(m, touch, which, by, n, level, curve):
     """
     marks, slots, elements = touch.marks, touch.slots, touch.elements
     first, last, body = which
-    box, (cx, cy, cz), t = is_box(shape_of(m, body)), pose_of(m, body, by)[0], pose_of(m, body, by)[1]
+    box, ((cx, cy, cz), t) = is_box(shape_of(m, body)), pose_of(m, body, by)
     u, v, w = to_body(t, n[0], n[1], n[2])
     height, total = n[0] * cx + n[1] * cy + n[2] * cz - level, 0.0
     for slot in range(first, last):

@@ -10,11 +10,10 @@ from parsim.solid.grid import grid_of, near_of
 from parsim.solid.search import FEATURE, KEY, A, B, above
 from parsim.solid.separation import BALLS, ROUND_A, best_feature, gap_of_balls, is_ball
 from parsim.solid.shapes.kernels import reach, touches_at_one_point
-from parsim.solid.speeds import bound_of_speed
+from parsim.solid.speeds import MARGIN, bound_of_speed
 from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, shape_of, three
 
 _ROUNDING = 1e-9  # of the widest body
-_MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
 class Reach(NamedTuple):
@@ -31,13 +30,13 @@ def near_pairs(m, touch, period, planar, dt, count):
     """Find the pairs that may touch within `dt`, s, and mark their bodies as involved; (number, reach in m).
 
     `period` (3,), m, inf where nothing repeats; the bodies are the first `count` rows of the table. A number beyond the
-    room for pairs says how much is needed. A grid, then upright boxes, then separating axes. 1 us a body.
+    room for pairs says how much is needed. A grid, then upright boxes, then separating axes. 3 us a ball, 50 a prism.
     """
     if count == 0:
         return 0, 0.0
     place, walls, ball = m[:count, POSITION : POSITION + 3], touch.walls, _balls(m)
     extent, widest = _extents(m, touch.forms, ball)
-    far = 2.0 * _MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
+    far = 2.0 * MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
     near = Reach(period, extent, far, planar)
     number, beside = 0, _beside(m, place, near)
     for k in range(len(beside)):  # balls apart from what takes long: a loop that calls much is slow where it does not

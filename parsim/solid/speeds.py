@@ -1,9 +1,11 @@
-"""Bounds of the speeds of bodies within a step."""
+"""Bounds of the speeds and of the frequencies of bodies within a step."""
 
 import math
 
 from parsim.machine.jit import kernel
-from parsim.solid.table import GIVEN, HASTE, HELD, INVERSE, LIGHT, RADIUS, ROLE, SPIN, VELOCITY, three
+from parsim.solid.table import GIVEN, HASTE, HELD, INVERSE, LIGHT, RADIUS, RATE, ROLE, SPIN, VELOCITY, three
+
+MARGIN = 1.5  # a body that is hit may become faster than any was before
 
 
 @kernel
@@ -34,3 +36,17 @@ def bound_of_speed(m, dt):
         if m[b, ROLE] != HELD:
             largest = max(largest, speed_of(m, b, dt))
     return largest
+
+
+@kernel
+def add_rate(m, a, b, n, square):
+    """Add to the RATE of the bodies of a pair, b < 0: a wall, what moves at the square of a frequency, 1/s2, along `n`.
+
+    Row sums of the matrix of k/m* n n: see `substeps._longest`.
+    """
+    u, v, w = abs(n[0]), abs(n[1]), abs(n[2])
+    for body in (a, b):
+        if body >= 0:
+            m[body, RATE] += square * u * (u + v + w)
+            m[body, RATE + 1] += square * v * (u + v + w)
+            m[body, RATE + 2] += square * w * (u + v + w)

@@ -4,7 +4,7 @@ import math
 
 from parsim.geometry.rotation import to_global
 from parsim.machine.jit import kernel
-from parsim.solid.speeds import length, speed_of
+from parsim.solid.speeds import MARGIN, length, speed_of
 from parsim.solid.table import (
     HASTE,
     INVERSE,
@@ -22,10 +22,9 @@ from parsim.solid.table import (
 )
 
 BODY, AT, FROM, TO, STIFFNESS, DAMPING, LENGTH, SLACK = 0, 1, 4, 7, 10, 11, 12, 13
-_NONE, _X, _Y, _Z = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_NONE = (0.0, 0.0, 0.0)
 _STEEPEST = 100.0  # times its stiffness that a spring pressed to almost nothing acts across
 STEPS = 4  # times those of a contact, in half a swing: sub-steps change as contacts come and go, and that makes energy
-_MARGIN = 1.5  # a body that is hit may become faster
 
 
 @kernel
@@ -134,4 +133,4 @@ def _may_pull(m, springs, k, dt):
     """Whether a spring may pull within `dt`, s."""
     if springs[k, SLACK] == 0.0:
         return True
-    return _away(m, springs, k)[2] + _MARGIN * dt * speed_of(m, int(springs[k, BODY]), dt) > 0.0
+    return _away(m, springs, k)[2] + MARGIN * dt * speed_of(m, int(springs[k, BODY]), dt) > 0.0

@@ -13,6 +13,7 @@ from parsim.solid.laws.foundation import FOUNDATION
 from parsim.solid.motion import alone, answer, drift, drift_involved, kick_involved, loads_on
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
 from parsim.solid.separation import BALLS, FIELD, ROUND_A, overlap_share, ramp_of
+from parsim.solid.speeds import add_rate
 from parsim.solid.springs import STEPS, held_by_springs, rate_springs
 from parsim.solid.table import DRIVEN, POSITION, QUATERNION, RATE, ROLE, SWING, three
 from parsim.solid.tanks import LAPSE, SHARE, SHEAR, STORED, restrain
@@ -139,13 +140,7 @@ def _rate_pair(m, touch, c, steps, reach):
         share = overlap_share(m, touch.forms, (a, b), three(shift, c, 0), (x, y, z), ramp)
         rigid *= min(share + reach / ramp, 1.0)
     many = steps[1] if calm else steps[0]
-    rigid *= many * many
-    u, v, w = abs(x), abs(y), abs(z)
-    for body in (a, b):
-        if body >= 0:
-            m[body, RATE] += rigid * u * (u + v + w)
-            m[body, RATE + 1] += rigid * v * (u + v + w)
-            m[body, RATE + 2] += rigid * w * (u + v + w)
+    add_rate(m, a, b, (x, y, z), rigid * (many * many))
 
 
 @kernel

@@ -15,7 +15,6 @@ from parsim.case.types import Moderate
 from parsim.errors import InputError
 from parsim.solid.shapes.samples import Samples, face_of
 from parsim.solid.shapes.shape import ShapeTable
-from parsim.solid.shapes.surface import volume_under
 
 _NODES = 64  # of the field along its longest side, where nothing else is asked for
 _ACROSS = 4  # of them across its shortest side, if that is more
@@ -131,11 +130,6 @@ class MeshShape(ShapeTable):
 
         return distances(np.asarray(points, float), *flat(self.field))
 
-    def under(self, up, level):
-        """See `ShapeTable`."""
-        points, quads = self.surface()
-        return volume_under(points @ np.array(up) - level, points, quads)
-
     def surface(self):
         """See `ShapeTable`; the last corner of a triangle is there twice."""
         return self._mesh.points, self._mesh.triangles[:, [0, 1, 2, 2]]
@@ -213,7 +207,6 @@ def _cut(mesh, size):
     """Points (k, 3), m, and triangles (n, 3) of a mesh, cut until their edges are at most `size`, m, long."""
     import trimesh
 
-    points, triangles = trimesh.remesh.subdivide_to_size(mesh.points, mesh.triangles, size, max_iter=20)
-    whole = np.round(points / (1e-6 * size))
-    _, first, same = np.unique(whole, axis=0, return_index=True, return_inverse=True)
-    return points[first], same.reshape(-1)[triangles]
+    from parsim.geometry.mesh import joined
+
+    return joined(*trimesh.remesh.subdivide_to_size(mesh.points, mesh.triangles, size, max_iter=20), 1e-6 * size)
