@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from contact_cases import case, momenta
+from contact_cases import FLAT, case, momenta
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -12,6 +12,7 @@ from parsim.case.places import Place, overlap
 from parsim.geometry.rotation import from_angles, matrices
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
+from parsim.solid.joints.drives import ScheduleTable
 from parsim.solid.laws import DEFAULT
 from parsim.solid.laws.hertz import HertzLaw
 from parsim.solid.laws.impulse import ImpulseLaw
@@ -105,8 +106,56 @@ def pair(dice, law):
     return bodies, Contacts(bodies, given_case), 1.2 * apart / speed
 
 
+def press(dice, law):
+    """Any body between two plates that close, soft ones to about its least width: (bodies, contacts, time it takes)."""
+    planar, size = dice.random() < 0.3, 10.0 ** dice.uniform(-2.0, -1.0)
+    body, flat = shape(dice, planar, size), 0.5 * size
+    wide, thin = 2.0 * body.radius(planar), 2.0 * body.thinnest(planar)
+    start, end = 1.05 * wide, 1.02 * wide if law.INSTANT else dice.uniform(0.98, 1.05) * thin
+    takes, closed = 10.0 ** dice.uniform(0.5, 2.0) * size, 0.5 * (start - end)
+    plate = BoxShape(size=(6.0 * size, 1.0 if planar else 6.0 * size, flat))
+    masses = 900.0 * np.array([body.volume, plate.volume, plate.volume])
+    if law.kind == "spring":
+        law = SpringLaw(kind="spring", stiffness=masses[0] * 400.0 * (closed / takes / thin) ** 2)
+    spin = dice.normal(size=3) * 2.0 * closed / (takes * size) * ((0.0, 1.0, 0.0) if planar else 1.0)
+    ways = {"lower": 1.0, "upper": -1.0}
+    bodies = Bodies(
+        [body, plate, plate],
+        masses,
+        [(0.5, 0.5, 0.5 - way * 0.5 * (start + flat)) for way in (0.0, *ways.values())],
+        quaternion=[pose(dice, planar), FLAT, FLAT],
+        spin=[spin, np.zeros(3), np.zeros(3)],
+        names=["body", *ways],
+        joints=[
+            ScheduleTable(kind="schedule", body=b, rows=[(0.0, 0.0, 0.0, 0.0), (takes, 0.0, 0.0, way * closed)])
+            for b, way in ways.items()
+        ],
+        planar=planar,
+    )
+    chosen = {"restitution": dice.uniform(0.05, 1.0), "friction": dice.choice([0.0, 0.3, 1.0])}
+    given_case = case(law=law, gravity=WEIGHTLESS, walls=(), young=1e7, **chosen)
+    given_case.dimensions = 2 if planar else 3
+    return bodies, Contacts(bodies, given_case), 1.1 * takes
+
+
 def held(bodies, contacts):
     return bodies.kinetic_energy() + contacts.elastic_energy()
+
+
+def is_pressed_and_stays(seed, law, steps=40, more=1e-6):
+    """Draw a body between closing plates and check it: no energy but from them, and it stays between them."""
+    bodies, contacts, takes = press(np.random.default_rng(seed), law)
+    start, time = held(bodies, contacts), 0.0
+    while time < takes:
+        dt = min(takes / steps, contacts.limit())
+        contacts.step(bodies, np.zeros((3, 6)), time, dt)
+        time += dt
+        given = start + contacts.driven_work
+        assert held(bodies, contacts) <= given + more * (given + contacts.dissipated), (seed, time)
+        at, lower, upper = bodies.position
+        if np.abs(at - 0.5)[:2].max() > 2.0 * bodies.shapes[1].size[2]:
+            break  # pressed out from between them, like the stone of a cherry
+        assert lower[2] < at[2] < upper[2], (seed, time)
 
 
 def meets_and_keeps(seed, law, steps=60, more=1e-6):
@@ -139,9 +188,14 @@ many = settings(few, max_examples=2500)
 
 
 def check(law, **how):
+    """Of five draws one is a body between closing plates."""
+
     @any_draw
     def run(seed):
-        assert meets_and_keeps(seed, law, **how) < 0.5, seed
+        if seed % 5 == 0:
+            is_pressed_and_stays(seed, law, **how)
+        else:
+            assert meets_and_keeps(seed, law, **how) < 0.5, seed
 
     return run
 

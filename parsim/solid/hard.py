@@ -13,9 +13,19 @@ import numpy as np
 from parsim.machine.jit import kernel
 from parsim.solid.forces import coefficients
 from parsim.solid.impulses import solve, velocity_of
-from parsim.solid.motion import alone, clear_loads, drift_involved, foresee, kick_involved
+from parsim.solid.islands import islands_of
+from parsim.solid.motion import (
+    alone,
+    clear_loads,
+    drift_driven,
+    drift_involved,
+    driven_now,
+    foresee,
+    kick_involved,
+    set_back,
+)
 from parsim.solid.points import points_of
-from parsim.solid.search import FEATURE, STRETCH, TOUCHING, A, B
+from parsim.solid.search import FEATURE, FIRST, LAST, STRETCH, TOUCHING, A, B
 from parsim.solid.separation import FIELD
 from parsim.solid.shapes.kernels import touches_at_one_point
 from parsim.solid.springs import STEPS, pull_springs, rate_springs
@@ -23,56 +33,73 @@ from parsim.solid.table import GIVEN, INVERSE, INVOLVED, LIGHT, RADIUS, ROLE, SP
 from parsim.solid.touch import normal_of
 
 _SINK = 1e-6  # of the least half width of a pair's bodies, that they sink into each other
-_MEETINGS = 50  # in one step of the water, at most, at which it is cut; what meets after them does so at its end
+_MEETINGS, _FEW = 50, 4  # in one step of the water, of a body and of an island at most, at which it is cut; what meets
+# after them does so at its end
 _LEAST = 1e-6  # of a step of the water that lies between two cuts
 _LIES = 4.0  # times the speed that loads give a body in a step, below which what comes closer lies
 
 
 @kernel
 def advance_hard(m, touch, number, dt, law, steps_per_swing):
-    """Move all bodies over `dt`, s; (points that touch, cuts, energy dissipated, J, work of what is driven, residual).
+    """Move all bodies over `dt`, s; (points that touch, most cuts of any, energy dissipated, J, work of what is driven,
+    residual).
 
-    law: sweeps and residual of `laws.impulse`. The residual is the largest that was left, over the largest speed.
-    Springs to the world cut the step too: steps in half a period of a body on them.
+    law: sweeps and residual of `laws.impulse`. The residual is the largest that was left, over the largest speed of its
+    island. Springs to the world cut the step too: steps in half a period of a body on them. Each island on its own.
     """
     alone(m, dt)
-    every = np.arange(len(m))
-    if number == 0 and len(touch.springs) == 0:
-        drift_involved(m, every, dt)
-        return 0, 1, 0.0, 0.0, 0.0
-    lost, work, cuts, rest, left, touching, meetings = 0.0, 0.0, 0, dt, 0.0, 0, 0
     rate_springs(m, touch, dt)
-    lies, rate = _LIES * _gains(m, dt), np.max(m[:, SWING])
+    islands = islands_of(m, touch, number)
+    touching, most, lost, work, left, driven = 0, 1, 0.0, 0.0, 0.0, driven_now(m)
+    for k in range(len(islands.first)):
+        rows = islands.rows[islands.first[k] : islands.last[k]]
+        which = islands.pairs[islands.first_pair[k] : islands.first_pair[k + 1]]
+        set_back(m, driven)
+        count, cuts, heat, by_driven, off = _advance(m, touch, (rows, which), dt, law, steps_per_swing)
+        touching, most, left = touching + count, max(most, cuts), max(left, off)
+        lost, work = lost + heat, work + by_driven
+    set_back(m, driven)
+    drift_driven(m, dt)
+    return touching, most, lost, work, left
+
+
+@kernel
+def _advance(m, touch, island, dt, law, steps_per_swing):
+    """Move one island over `dt`, s; what `advance_hard` returns of it."""
+    rows, which = island
+    lost, work, cuts, rest, left, touching, meetings = 0.0, 0.0, 0, dt, 0.0, 0, 0
+    lies, rate = _LIES * _gains(m, rows, dt), np.max(m[rows, SWING])
     longest = math.pi / (STEPS * steps_per_swing * math.sqrt(rate)) if rate > 0.0 else dt
     while rest > 0.0:
         span = rest / math.ceil(rest / longest)
-        if meetings < _MEETINGS:
-            meeting = max(_time_to_meet(m, touch, number, rest, lies), _LEAST * dt)
+        if meetings < max(_MEETINGS // len(rows), _FEW):
+            meeting = max(_time_to_meet(m, touch, which, rest, lies), _LEAST * dt)
             if meeting < span:
                 span, meetings = meeting, meetings + 1
-        drift_involved(m, every, 0.5 * span)
-        clear_loads(m, every)
-        pull_springs(m, touch, every)
-        for b in every:
+        drift_involved(m, rows, 0.5 * span)
+        clear_loads(m, rows)
+        pull_springs(m, touch, rows)
+        for b in rows:
             foresee(m, b, span)
-        heat, by_driven = kick_involved(m, every, span)
+        heat, by_driven = kick_involved(m, rows, span)
         lost, work = lost + heat, work + by_driven
-        points = points_of(m, touch, number)
+        points = points_of(m, touch, which)
         touching = len(points.slot)
         if touching > 0:
-            gone, done, off = solve(m, touch, points, law, _aim(m, touch, points, lies, span))
+            _aim(m, touch, points, lies, span)
+            gone, done, off = solve(m, touch, points, rows, law)
             lost, work, left = lost + gone, work + done, max(left, off)
-        _note_forces(touch, points, span)
-        drift_involved(m, every, 0.5 * span)
+        _note_forces(touch, which, points, span)
+        drift_involved(m, rows, 0.5 * span)
         rest, cuts = (rest - span if span < rest else 0.0), cuts + 1
     return touching, cuts, lost, work, left
 
 
 @kernel
-def _gains(m, dt):
-    """Largest speed, m/s, that the given loads give any body in the step."""
+def _gains(m, rows, dt):
+    """Largest speed, m/s, that the given loads give any of these bodies in the step."""
     most = 0.0
-    for b in range(len(m)):
+    for b in rows:
         if m[b, ROLE] == INVOLVED:
             x, y, z = three(m, b, GIVEN)
             most = max(most, dt * m[b, LIGHT] * math.sqrt(x * x + y * y + z * z))
@@ -88,32 +115,32 @@ def _sink(touch, a, b):
 
 @kernel
 def _aim(m, touch, points, lies, span):
-    """Set the speeds that points are to have along their normals; whether any comes closer faster than `lies`, m/s.
+    """Set the speeds that points are to have along their normals.
 
-    Those leave. The others may sink as deep as they lie in the coming `span`, s, and begin with the forces of before.
+    What comes closer faster than `lies`, m/s, leaves. The others may sink as deep as they lie in the coming `span`, s,
+    and begin with the forces of before.
     """
-    fast = False
     for k in range(len(points.slot)):
         c, slot, n = points.pair[k], points.slot[k], three(points.normal, k, 0)
         a, b = touch.pairs[c, A], touch.pairs[c, B]
         v = velocity_of(m, touch, points, k)
         closer = -(v[0] * n[0] + v[1] * n[1] + v[2] * n[2])
         if closer > lies:
-            points.wanted[k], fast = coefficients(m, touch, a, b)[1] * closer, True
+            points.wanted[k] = coefficients(m, touch, a, b)[1] * closer
             continue
         points.wanted[k] = min(points.depth[k] - _sink(touch, a, b), 0.0) / span
         if touch.marks[slot, TOUCHING]:
             for axis in range(3):
                 points.impulse[k, axis] = span * touch.slots[slot, STRETCH + axis]
-    return fast
 
 
 @kernel
-def _note_forces(touch, points, span):
+def _note_forces(touch, which, points, span):
     """Note the forces of all points, N, in place of the stretch that springs would have."""
     marks, slots = touch.marks, touch.slots
-    for slot in range(len(marks)):
-        marks[slot, TOUCHING] = 0
+    for c in which:
+        for slot in range(touch.pairs[c, FIRST], touch.pairs[c, LAST] + 1):
+            marks[slot, TOUCHING] = 0
     for k in range(len(points.slot)):
         marks[points.slot[k], TOUCHING] = 1
         for a in range(3):
@@ -121,13 +148,13 @@ def _note_forces(touch, points, span):
 
 
 @kernel
-def _time_to_meet(m, touch, number, rest, lies):
+def _time_to_meet(m, touch, which, rest, lies):
     """A time, s, at most `rest`, in which no pair that is apart can touch, 0 where one hits, faster than `lies`, m/s.
 
     Along its normal a pair closes no faster than its centres and its spins do.
     """
     pairs, hit = touch.pairs, False
-    for c in range(number):
+    for c in which:
         apart, x, y, z = normal_of(m, touch, c)
         a, b = pairs[c, A], pairs[c, B]
         speed, gain = _closing(m, a, (-x, -y, -z))
@@ -143,7 +170,7 @@ def _time_to_meet(m, touch, number, rest, lies):
         root = speed * speed + 2.0 * gain * apart
         if root > 0.0 and speed + math.sqrt(root) > 0.0:
             rest = min(rest, 2.0 * apart / (speed + math.sqrt(root)))
-    if hit and _fastest(m, touch, points_of(m, touch, number)) > lies:
+    if hit and _fastest(m, touch, points_of(m, touch, which)) > lies:
         return 0.0
     return rest
 

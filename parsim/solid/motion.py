@@ -7,6 +7,8 @@ without forces, and kicks act across the rod; locked axes take no kick.
 
 import math
 
+import numpy as np
+
 from parsim.geometry.rotation import free_turn, matrix, scaled, turn_of, turned, unit
 from parsim.machine.jit import kernel
 from parsim.solid.table import (
@@ -217,6 +219,37 @@ def drift_involved(m, rows, dt):
     """Move what is driven and the bodies that may touch something over `dt`, s; rows of the table."""
     for b in rows:
         if m[b, ROLE] == INVOLVED or m[b, ROLE] == DRIVEN:
+            drift(m, b, dt)
+
+
+@kernel
+def driven_now(m):
+    """Of what is driven its row, place, quaternion and rotation matrix, by columns."""
+    count = 0
+    for b in range(len(m)):
+        count += m[b, ROLE] == DRIVEN
+    out, row = np.empty((count, 17)), 0
+    for b in range(len(m)):
+        if m[b, ROLE] == DRIVEN:
+            out[row, 0], out[row, 1:4] = b, m[b, POSITION : POSITION + 3]
+            out[row, 4:17] = m[b, QUATERNION : QUATERNION + 13]
+            row += 1
+    return out
+
+
+@kernel
+def set_back(m, driven):
+    """Bring what is driven back to where it was."""
+    for row in range(len(driven)):
+        b = int(driven[row, 0])
+        m[b, POSITION : POSITION + 3], m[b, QUATERNION : QUATERNION + 13] = driven[row, 1:4], driven[row, 4:17]
+
+
+@kernel
+def drift_driven(m, dt):
+    """Move what is driven over `dt`, s."""
+    for b in range(len(m)):
+        if m[b, ROLE] == DRIVEN:
             drift(m, b, dt)
 
 

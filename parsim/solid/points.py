@@ -29,11 +29,11 @@ class Points(NamedTuple):
 
 
 @kernel
-def points_of(m, touch, number):
-    """All points that touch: `Points`, their impulses zero."""
+def points_of(m, touch, which):
+    """All points of the pairs `which` that touch: `Points`, their impulses zero."""
     pairs, slots = touch.pairs, touch.slots
     count = 0
-    for c in range(number):
+    for c in which:
         apart, x, y, z = normal_of(m, touch, c)
         area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
@@ -51,7 +51,7 @@ def points_of(m, touch, number):
         np.zeros(count),
     )
     k = 0
-    for c in range(number):
+    for c in which:
         n, known = (0.0, 0.0, 0.0), False
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:

@@ -2,20 +2,27 @@
 
 import math
 
-import numpy as np
-
 from parsim.machine.jit import kernel
 from parsim.solid.balls import CALM, rate_balls
 from parsim.solid.forces import coefficients, compliance, free_time, hardness, press, relative_motion, velocity_at
 from parsim.solid.hollows import normal_by_elements
 from parsim.solid.islands import islands_of
 from parsim.solid.laws.foundation import FOUNDATION
-from parsim.solid.motion import alone, answer, drift, drift_involved, kick_involved, loads_on
+from parsim.solid.motion import (
+    alone,
+    answer,
+    drift_driven,
+    drift_involved,
+    driven_now,
+    kick_involved,
+    loads_on,
+    set_back,
+)
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
 from parsim.solid.separation import BALLS, FIELD, ROUND_A, overlap_share, ramp_of
 from parsim.solid.speeds import add_rate
 from parsim.solid.springs import STEPS, held_by_springs, rate_springs
-from parsim.solid.table import DRIVEN, POSITION, QUATERNION, RATE, ROLE, SWING, three
+from parsim.solid.table import POSITION, RATE, SWING, three
 from parsim.solid.tanks import LAPSE, SHARE, SHEAR, STORED, restrain
 from parsim.solid.touch import centre_of, measure, normal_of, show
 
@@ -36,41 +43,16 @@ def advance(m, touch, number, dt, reach, steps_per_contact):
     alone(m, dt)
     rate_springs(m, touch, dt)
     islands = islands_of(m, touch, number)
-    touching, most, lost, work, driven = 0, 1, 0.0, 0.0, _driven_now(m)
+    touching, most, lost, work, driven = 0, 1, 0.0, 0.0, driven_now(m)
     for k in range(len(islands.first)):
         rows, own = islands.rows[islands.first[k] : islands.last[k]], islands.own[k] - islands.first[k]
         which = islands.pairs[islands.first_pair[k] : islands.first_pair[k + 1]]
-        _set_back(m, driven)
+        set_back(m, driven)
         count, steps, heat, by_driven = _advance(m, touch, (rows, own, which), dt, reach, steps_per_contact)
         touching, most, lost, work = touching + count, max(most, steps), lost + heat, work + by_driven
-    _set_back(m, driven)
-    for b in range(len(m)):
-        if m[b, ROLE] == DRIVEN:
-            drift(m, b, dt)
+    set_back(m, driven)
+    drift_driven(m, dt)
     return touching, most, lost, work
-
-
-@kernel
-def _driven_now(m):
-    """Of what is driven its row, place, quaternion and rotation matrix, by columns."""
-    count = 0
-    for b in range(len(m)):
-        count += m[b, ROLE] == DRIVEN
-    out, row = np.empty((count, 17)), 0
-    for b in range(len(m)):
-        if m[b, ROLE] == DRIVEN:
-            out[row, 0], out[row, 1:4] = b, m[b, POSITION : POSITION + 3]
-            out[row, 4:17] = m[b, QUATERNION : QUATERNION + 13]
-            row += 1
-    return out
-
-
-@kernel
-def _set_back(m, driven):
-    """Bring what is driven back to where it was."""
-    for row in range(len(driven)):
-        b = int(driven[row, 0])
-        m[b, POSITION : POSITION + 3], m[b, QUATERNION : QUATERNION + 13] = driven[row, 1:4], driven[row, 4:17]
 
 
 @kernel

@@ -135,9 +135,10 @@ def _account(m, touch, which, span):
         if tanks[c, NOW] > 0.0:
             room = tanks[c, BEFORE] + tanks[c, NOW]
             lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, pairs, shift, tanks, c, LOSSES, span)[0]
-            lost = max(lost, -tanks[c, LOST])
+            there = max(tanks[c, STORED] - tanks[c, WORK], 0.0)
+            lost = min(max(lost, -tanks[c, LOST]), there)  # what was not there can't be lost, nor then be given back
             tanks[c, LOST] = min(tanks[c, LOST] + lost, room)
-            tanks[c, STORED] = max(tanks[c, STORED] - tanks[c, WORK] - lost, 0.0)
+            tanks[c, STORED] = there - lost
             shear += tanks[c, SHEAR]
     return shear
 
