@@ -15,6 +15,7 @@ from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.laws import DEFAULT, LAWS
 from parsim.solid.laws.hertz import HertzLaw
+from parsim.solid.laws.impulse import ImpulseLaw
 from parsim.solid.laws.law import compliance, damping_of
 from parsim.solid.laws.spring import SpringLaw
 from parsim.solid.shapes import SphereShape
@@ -143,7 +144,7 @@ def test_a_narrow_contact_is_soft_whatever_the_law(law):
     assert np.abs(bodies.velocity[2]).max() < 1e-3
 
 
-@pytest.mark.parametrize("law", LAWS_HERE, ids=lambda law: law.kind)
+@pytest.mark.parametrize("law", [*LAWS_HERE, ImpulseLaw(kind="impulse")], ids=lambda law: law.kind)
 @pytest.mark.parametrize("slope", [2.0, 8.0])
 def test_rolling_friction_holds_a_ball_to_its_angle_and_slows_it_above(law, slope):
     """Held while tan a < mu_r; above, m a = m g (sin a - mu_r cos a) / 1.4 for a ball that does not slip."""

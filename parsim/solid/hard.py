@@ -25,7 +25,7 @@ from parsim.solid.motion import (
     set_back,
 )
 from parsim.solid.points import points_of
-from parsim.solid.search import FEATURE, FIRST, LAST, STRETCH, TOUCHING, A, B
+from parsim.solid.search import FEATURE, FIRST, LAST, ROLL, STRETCH, TOUCHING, A, B
 from parsim.solid.separation import FIELD
 from parsim.solid.shapes.kernels import touches_at_one_point
 from parsim.solid.springs import STEPS, pull_springs, rate_springs
@@ -132,11 +132,12 @@ def _aim(m, touch, points, lies, span):
         if touch.marks[slot, TOUCHING]:
             for axis in range(3):
                 points.impulse[k, axis] = span * touch.slots[slot, STRETCH + axis]
+                points.spun[k, axis] = span * touch.slots[slot, ROLL + axis]
 
 
 @kernel
 def _note_forces(touch, which, points, span):
-    """Note the forces of all points, N, in place of the stretch that springs would have."""
+    """Note the forces of all points, N, and torques, N m, in place of the stretch that springs would have."""
     marks, slots = touch.marks, touch.slots
     for c in which:
         for slot in range(touch.pairs[c, FIRST], touch.pairs[c, LAST] + 1):
@@ -145,6 +146,7 @@ def _note_forces(touch, which, points, span):
         marks[points.slot[k], TOUCHING] = 1
         for a in range(3):
             slots[points.slot[k], STRETCH + a] = points.impulse[k, a] / span
+            slots[points.slot[k], ROLL + a] = points.spun[k, a] / span
 
 
 @kernel

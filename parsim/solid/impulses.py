@@ -2,8 +2,9 @@
 
 Found by sweeps over all points in the order of the pairs, there and back, each point taking what the others leave (a
 projected Gauss-Seidel scheme, Jean 1999, doi 10.1016/S0045-7825(98)00383-1): its normal impulse does not pull, its
-friction is at most mu times that and else stops the slip. What is found takes energy or keeps it (Moreau 1988); where
-restitution with friction would give some, all points leave slower, together.
+friction is at most mu times that and else stops the slip; rolling friction likewise, at most mu_r R times that. What is
+found takes energy or keeps it (Moreau 1988); where restitution with friction would give some, all points leave slower,
+together.
 """
 
 import math
@@ -14,6 +15,7 @@ from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
 from parsim.solid.forces import coefficients
 from parsim.solid.motion import answer, update_momentum
+from parsim.solid.points import at_centre
 from parsim.solid.search import A, B
 from parsim.solid.table import DRIVEN, INERTIA, INVOLVED, LIGHT, MEAN, ROLE, SPIN, TOTAL, VELOCITY, three, turn_at
 
@@ -42,21 +44,30 @@ def _push(m, touch, points, k, f):
     """Give the bodies of point k the impulse `f` (3,), N s, on body a."""
     c = points.pair[k]
     a, b = touch.pairs[c, A], touch.pairs[c, B]
-    _hit(m, a, three(points.arms, k, 0), f)
+    _hit(m, a, at_centre(three(points.arms, k, 0), f))
     if b >= 0:
-        _hit(m, b, three(points.arms, k, 3), (-f[0], -f[1], -f[2]))
+        _hit(m, b, at_centre(three(points.arms, k, 3), (-f[0], -f[1], -f[2])))
 
 
 @kernel
-def _hit(m, b, arm, f):
-    x, y, z = arm
-    load = (f[0], f[1], f[2], y * f[2] - z * f[1], z * f[0] - x * f[2], x * f[1] - y * f[0])
+def _hit(m, b, load):
+    """Give body `b` an impulse and an angular impulse about its centre, six numbers."""
     v, w = answer(m, b, load)
     for k in range(3):
         m[b, VELOCITY + k] += v[k]
         m[b, SPIN + k] += w[k]
         m[b, TOTAL + k] += load[k]
         m[b, TOTAL + 3 + k] += load[3 + k]
+
+
+@kernel
+def _twist(m, touch, points, k, t):
+    """Give the bodies of point k the angular impulse `t` (3,), N m s, on body a."""
+    c = points.pair[k]
+    a, b = touch.pairs[c, A], touch.pairs[c, B]
+    _hit(m, a, (0.0, 0.0, 0.0, t[0], t[1], t[2]))
+    if b >= 0:
+        _hit(m, b, (0.0, 0.0, 0.0, -t[0], -t[1], -t[2]))
 
 
 @kernel
@@ -80,8 +91,7 @@ def solve(m, touch, points, rows, law):
     if _energy(m, rows) > before + _driven_work(m, rows, start):
         end = _state(m, rows)
         _blend(m, rows, start, start, 0.0)
-        points.impulse[:] = 0.0
-        points.wanted[:] = 0.0
+        points.impulse[:] = points.spun[:] = points.wanted[:] = 0.0
         off = _sweep(m, touch, points, law, False)
         _slow(m, rows, start, end, before)
     for b in rows:
@@ -120,6 +130,8 @@ def _sweep(m, touch, points, law, onward):
         scale = max(scale, abs(v[0]) + abs(v[1]) + abs(v[2]), abs(points.wanted[k]))
     for k in range(count):
         _push(m, touch, points, k, three(points.impulse, k, 0))
+        if points.rolls[k, 0] > 0.0:
+            _twist(m, touch, points, k, three(points.spun, k, 0))
     way, start = np.zeros((count, 3)), np.empty((count, 3))
     for sweep in range(most):
         if sweep % 2 == 0:
@@ -183,7 +195,27 @@ def _relax(m, touch, points, k):
     points.impulse[k, 0] = tx + fresh * n[0]
     points.impulse[k, 1] = ty + fresh * n[1]
     points.impulse[k, 2] = tz + fresh * n[2]
-    return change
+    return max(change, _roll(m, touch, points, k, fresh)) if points.rolls[k, 0] > 0.0 else change
+
+
+@kernel
+def _roll(m, touch, points, k, normal):
+    """Stop what rolls at point k as far as its `normal` impulse, N s, can; by how much it has slowed, m/s."""
+    c = points.pair[k]
+    (p, q, r), n, t = three(m, touch.pairs[c, A], SPIN), three(points.normal, k, 0), three(points.spun, k, 0)
+    if touch.pairs[c, B] >= 0:
+        u, v, w = three(m, touch.pairs[c, B], SPIN)
+        p, q, r = p - u, q - v, r - w
+    about, (arm, soft, radius) = p * n[0] + q * n[1] + r * n[2], three(points.rolls, k, 0)
+    x, y, z = t[0] - (p - about * n[0]) / soft, t[1] - (q - about * n[1]) / soft, t[2] - (r - about * n[2]) / soft
+    size = math.sqrt(x * x + y * y + z * z)
+    if size > arm * normal:
+        share = arm * normal / size
+        x, y, z = share * x, share * y, share * z
+    points.spun[k, 0], points.spun[k, 1], points.spun[k, 2] = x, y, z
+    x, y, z = x - t[0], y - t[1], z - t[2]
+    _twist(m, touch, points, k, (x, y, z))
+    return math.sqrt(x * x + y * y + z * z) * soft * radius
 
 
 @kernel

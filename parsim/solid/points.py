@@ -6,17 +6,21 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.machine.jit import kernel
+from parsim.solid.forces import coefficients
 from parsim.solid.motion import answer
 from parsim.solid.search import DEPTH, FEATURE, FIRST, LAST, NORMAL, POINT, TOUCHING, A, B
 from parsim.solid.separation import FIELD
 from parsim.solid.shapes.polygon import MARGIN
-from parsim.solid.table import POSITION, three
+from parsim.solid.table import INVERSE, POSITION, three
+from parsim.solid.tanks import RADIUS
 from parsim.solid.touch import measure, normal_of
 
 
 class Points(NamedTuple):
     """Of each point that touches: slot, pair; normal (n, 3); arms (n, 6) from the centres of a and b, m; how deep, m;
-    softness along and across the normal, 1/kg; impulse (n, 3), N s; speed along the normal that it is to have, m/s."""
+    softness along and across the normal, 1/kg; impulse (n, 3), N s; speed along the normal that it is to have, m/s;
+    of rolling friction its arm, m, softness at most, 1/(kg m2), and radius, m, (n, 3), and angular impulse (n, 3), N m
+    s."""
 
     slot: np.ndarray
     pair: np.ndarray
@@ -26,6 +30,8 @@ class Points(NamedTuple):
     soft: np.ndarray
     impulse: np.ndarray
     wanted: np.ndarray
+    rolls: np.ndarray
+    spun: np.ndarray
 
 
 @kernel
@@ -49,6 +55,8 @@ def points_of(m, touch, which):
         np.zeros((count, 2)),
         np.zeros((count, 3)),
         np.zeros(count),
+        np.zeros((count, 3)),
+        np.zeros((count, 3)),
     )
     k = 0
     for c in which:
@@ -98,6 +106,19 @@ def _note(m, touch, out, k, c, slot, n):
     uu, vv = _softness(m, out.arms, k, (a, b), u, u), _softness(m, out.arms, k, (a, b), v, v)
     uv, off = _softness(m, out.arms, k, (a, b), u, v), 0.5 * (uu - vv)
     out.soft[k, 1] = 0.5 * (uu + vv) + math.sqrt(off * off + uv * uv)
+    radius, rolling = touch.tanks[c, RADIUS], coefficients(m, touch, a, b)[4]
+    if radius > 0.0 and rolling > 0.0:
+        soft = max(m[a, INVERSE], m[a, INVERSE + 1], m[a, INVERSE + 2])
+        if b >= 0:
+            soft += max(m[b, INVERSE], m[b, INVERSE + 1], m[b, INVERSE + 2])
+        out.rolls[k, 0], out.rolls[k, 1], out.rolls[k, 2] = rolling * radius, soft, radius
+
+
+@kernel
+def at_centre(arm, f):
+    """Force and torque about a centre, six numbers, of the force `f` at `arm` from there."""
+    x, y, z = arm
+    return f[0], f[1], f[2], y * f[2] - z * f[1], z * f[0] - x * f[2], x * f[1] - y * f[0]
 
 
 @kernel
@@ -110,6 +131,6 @@ def _softness(m, arms, k, ab, n, u):
 @kernel
 def _softness_of(m, b, arm, n, u):
     x, y, z = arm
-    v, w = answer(m, b, (n[0], n[1], n[2], y * n[2] - z * n[1], z * n[0] - x * n[2], x * n[1] - y * n[0]))
+    v, w = answer(m, b, at_centre(arm, n))
     soft = u[0] * (v[0] + w[1] * z - w[2] * y) + u[1] * (v[1] + w[2] * x - w[0] * z)
     return soft + u[2] * (v[2] + w[0] * y - w[1] * x)

@@ -15,7 +15,7 @@ class ImpulseLaw(LawTable):
     INSTANT = True
 
     kind: Literal["impulse"] = Field(description="hard bodies, whose contacts take no time")
-    sweeps: Count = Field(1000, description="sweeps over all contacts to find the impulses, at most")
+    sweeps: Count = Field(200, description="sweeps over all contacts to find the impulses, at most")
     residual: Annotated[Real, Field(gt=0, le=1e-2)] = Field(
         1e-6, description="change of speed in a sweep, over the largest, at which they are found"
     )
