@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from parsim.case.types import Name, Positive, Real, Share, Table, Whole
+from parsim.case.types import Name, NotNegative, Positive, Real, Share, Table, Whole
 from parsim.solid.laws import DEFAULT, Law
 
 
@@ -16,6 +16,9 @@ class Material(Table):
     friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
     restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
     rolling: Share = Field(0.0, description="coefficient of rolling friction, of what is round")
+    roughness: NotNegative | None = Field(
+        None, description="equivalent sand roughness ks that water feels, m; left out: water.friction.roughness"
+    )
 
 
 class Pair(Table):

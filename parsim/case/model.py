@@ -15,6 +15,7 @@ from parsim.boundary.sides import OPEN, WALL, Side
 from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
 from parsim.case.file import locate, read, replaced, written
+from parsim.case.friction import Eddies, Friction
 from parsim.case.messages import validated
 from parsim.case.output import Output, Report
 from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
@@ -68,6 +69,8 @@ class Water(Table):
     speed: Moderate | None = Field(
         None, description="largest expected speed, m/s; left out: 2 sqrt(g H), H the greatest depth of the fill"
     )
+    friction: Friction | None = Field(None, description="how walls and bodies rub it; left out: not at all")
+    eddies: Eddies | None = Field(None, description="eddy viscosity; left out: none")
     disorder: Annotated[Real, Field(ge=0, le=0.5)] = Field(
         0.0, description="how far particles are off the lattice at the start, at most, over the spacing"
     )

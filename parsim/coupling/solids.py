@@ -6,6 +6,7 @@ from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall_samples import Walls
 from parsim.case.scales import power_of_two, scales
 from parsim.coupling.films import Films
+from parsim.coupling.friction import Friction
 from parsim.coupling.samples import BodySamples
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
@@ -25,6 +26,9 @@ class Solids:
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
         self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [])
+        self.friction = None
+        if case.water.friction is not None:
+            self.friction = Friction(case, self.bodies, self.samples, self.gate, lattice)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._wet = case.water.scheme.WET
         self._load = np.zeros((len(self.bodies), 6))  # of the water in this step
@@ -46,10 +50,19 @@ class Solids:
         if self.pushed():
             self.samples.find(flow.domain, flow.near)
             self.films.find(flow.domain)
+        if self.friction:
+            self.friction.find(flow.particles, flow.near)
 
     def place(self, flow, time, ahead):
         """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""
         self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
+
+    def rub(self, flow):
+        """What walls and bodies make the water feel of their friction, a `friction.Rubbing`; None if nothing."""
+        if not self.friction:
+            return None
+        with self.timers("friction"):
+            return self.friction.find_slip(flow)
 
     def pushed(self):
         """Whether there is water, and bodies for it to push."""

@@ -22,6 +22,9 @@ class Solids(Protocol):
     def place(self, flow, time, ahead):
         """Bring the samples of all that is solid to where it is at time + ahead, s."""
 
+    def rub(self, flow):
+        """What the water feels of the friction of walls and bodies, slip and share of samples; None where none rubs."""
+
     def pushed(self):
         """Whether there is anything that the water can push."""
 

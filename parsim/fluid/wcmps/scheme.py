@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from parsim.fluid import recovery, shifting, surface
+from parsim.fluid import friction, recovery, shifting, surface, turbulence
 from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import energy, sweeps, tables, updates
 from parsim.fluid.wcmps.fields import ISOTROPY, NORMAL, TWICE_VISCOUS, VISCOUS, isotropy
@@ -47,6 +47,9 @@ class WCMPS:
         self._whole = lattice.whole / (1.0 + 0.5 * gravity * case.depth / self.sound**2)
         self.recovery = 2.0 * choice.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self.restitution = choice.restitution
+        self.eddies = turbulence.length_of(case) if water.eddies else None
+        by_law = water.friction is None or water.friction.kind == "wall_law"
+        self._rub = 0.0 if by_law else self.viscosity * self._viscous
         self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
         self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
         self.close2 = (choice.collision_distance * case.spacing) ** 2
@@ -90,12 +93,14 @@ class WCMPS:
             solids.place(flow, time, 0.5 * dt)
             self._predict(p, dt)
         self._press(p, near)
+        rubbing = solids.rub(flow)
         with self.timers("bodies"):
             if solids.pushed():
-                solids.push(flow, self._react(p, near, near.body, dt), time, dt)
+                solids.push(flow, self._react(p, near, near.body, dt, rubbing), time, dt)
             if solids.driven(time + 0.5 * dt):
-                solids.drive(flow, self._react(p, near, near.gate, dt), time + 0.5 * dt, dt)
+                solids.drive(flow, self._react(p, near, near.gate, dt, rubbing), time + 0.5 * dt, dt)
         self._accelerate(domain, near, dt)
+        self._shear(domain, near, rubbing)
         with self.timers("move"):
             updates.kick(near.fluid, self.gravity, flow.keep, dt, p.acceleration, p.velocity)
         solids.advance(flow, time, dt)
@@ -130,6 +135,28 @@ class WCMPS:
             bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
             surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
 
+    def _shear(self, domain, near, rubbing):
+        """Add the stress of walls and of eddies to the acceleration of the fluid."""
+        p, at, weight = domain.particles, near.fluid, self.lattice.weight
+        if self.eddies:
+            with self.timers("eddies"):
+                turbulence.eddy_viscosity(
+                    at,
+                    near.lists,
+                    p.kinematics,
+                    weight,
+                    self.eddies,
+                    self.lattice.number,
+                    self.lattice.dimensions,
+                    p.eddy,
+                )
+                with domain.refreshing("eddy"):
+                    pass
+                turbulence.mix(at, near.lists, p.kinematics, weight, p.eddy, self._viscous, p.acceleration)
+        if rubbing:
+            with self.timers("friction"):
+                friction.drag_water(at, near.lists, p.kinematics, weight, rubbing, self._rub, p.acceleration)
+
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
         with self.timers("momentum"):
@@ -137,7 +164,7 @@ class WCMPS:
                 at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration, around
             )
 
-    def _react(self, p, near, at, dt):
+    def _react(self, p, near, at, dt, rubbing):
         """Forces of the water on the samples `at`, N: (samples, 3), and how they depend on accelerations.
 
         Also `lever` (samples, 3), Pa s2/m, and `response` (samples, 6), kg: see `sweeps.reaction`.
@@ -145,7 +172,12 @@ class WCMPS:
         forces, count = self._forces(dt), at.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
         sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
-        return self.mass * out.force, out.lever, self.mass * out.response
+        force = self.mass * out.force
+        if rubbing:
+            friction.drag_samples(
+                at, near.lists, p.kinematics, self.lattice.weight, rubbing, self._rub, self.mass, force
+            )
+        return force, out.lever, self.mass * out.response
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""

@@ -1,0 +1,131 @@
+"""Which samples of walls, gate and bodies have faces to the water, and what these find: see `parsim.fluid.friction`."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from parsim.fluid.friction import SLIP, Facets, Seen, mirror, rub, slip_of, spread
+from parsim.geometry.faces import SIDES, planes_of_walls, walled_sides
+from parsim.geometry.rotation import matrices
+from parsim.particles.state import BODY, GATE_DOWN, GATE_UP, WALL
+from parsim.particles.tables import Vectors
+
+
+class Rubbing(NamedTuple):
+    """What the water feels of samples: their slip, and how much each counts (n,), nothing if it does not rub."""
+
+    slip: Vectors
+    share: np.ndarray
+
+
+class Friction:
+    """The faces of all samples of a case that rub. `stress` (f, 3), N, of each face of this rank in this step."""
+
+    def __init__(self, case, bodies, samples, gate, lattice):
+        self.bodies, self._gate, self._lattice = bodies, gate, lattice
+        table, self._spacing = case.water.friction, case.spacing
+        self._by_law = table.kind == "wall_law"
+        self._planes, named = planes_of_walls(case), [SIDES[a][s > 0] for a, s, _ in walled_sides(case)]
+        self._rubs = np.array([table.walls is None or name in table.walls for name in named], bool)
+        self._bodies_rub, self._mass = table.bodies, case.water.density * lattice.volume
+        half = sum(w for w, _, _, up in lattice.points() if up > 0.5 * case.spacing)
+        viscosity, density = case.water.viscosity, case.water.density
+        self._seen = Seen(case.spacing, half, lattice.volume, viscosity, density)
+        rough = [table.roughness if m.roughness is None else m.roughness for m in case.materials.values()]
+        self._of_walls = rough[list(case.materials).index(case.wall_material)] if rough else table.roughness
+        self._of_bodies = np.array(rough or [0.0])[bodies.material]
+        self._patches = _patches(samples)
+        self.stress = np.zeros((0, 3))
+
+    def find(self, p, near):
+        """Note, after a rebuild, the faces of this rank's samples, and which of all particles rub."""
+        self.share = np.where(self._rubbing(p), 1.0 if self._by_law else p.scale, 0.0)
+        if self._by_law:
+            fixed, own = self._fixed(p, near.boundary), self._own(p, near.body)
+            self._turned = len(fixed.at), own.normal, p.body[own.at]
+            self._facets = Facets(*map(np.concatenate, zip(fixed, own, strict=True)))
+            self.stress = np.zeros((len(self._facets.at), 3))
+
+    def find_slip(self, flow):
+        """Set the slip of this rank's samples and refresh it in the halos: `Rubbing`."""
+        p, lists, weight = flow.particles, flow.near.lists, self._lattice.weight
+        if self._by_law:
+            self._turn()
+            rub(self._facets, lists, p.kinematics, weight, self._seen, self.stress)
+            spread(self._facets, lists, p.place, weight, self._mass, self.stress, slip_of(p))
+        else:
+            mirror(flow.near.boundary, lists, p.kinematics, weight, slip_of(p))
+        with flow.domain.refreshing(*SLIP):
+            pass
+        return Rubbing(slip_of(p), self.share)
+
+    def _turn(self):
+        """Bring the normals of bodies to their present pose."""
+        count, normal, body = self._turned
+        if len(body):
+            turn = matrices(self.bodies.quaternion)
+            self._facets.normal[count:] = np.einsum("fij,fj->fi", turn[body], normal)
+
+    def _rubbing(self, p):
+        """Which particles rub: (n,) bool."""
+        of_wall = np.zeros(len(p), bool)
+        for plane in self._planes[self._rubs]:
+            of_wall |= _before(plane, p, slice(None)) < 0.0
+        of_gate = (p.kind == GATE_UP) | (p.kind == GATE_DOWN)
+        return ((p.kind == WALL) & of_wall) | of_gate | ((p.kind == BODY) & self._bodies_rub)
+
+    def _fixed(self, p, at):
+        """Faces of the walls and the gate among the samples `at`."""
+        parts = []
+        for k, plane in enumerate(self._planes):
+            if self._rubs[k]:
+                first = (p.kind[at] == WALL) & (_before(plane, p, at) > -self._spacing) & (_before(plane, p, at) < 0.0)
+                parts.append((at[first & self._inside(p, at, k)], plane))
+        if self._gate:
+            for kind, side, level in ((GATE_UP, -1.0, self._gate.min_x), (GATE_DOWN, 1.0, self._gate.max_x)):
+                plane = np.array([side, 0.0, 0.0, side * level])
+                first = (p.kind[at] == kind) & (_before(plane, p, at) > -self._spacing)
+                parts.append((at[first & self._inside(p, at, -1)], plane))
+        area = self._spacing ** (self._lattice.dimensions - 1)
+        found = [np.concatenate([np.zeros(0, np.int64), *(at for at, _ in parts)])]
+        found.append(np.concatenate([np.zeros(0), *(-_before(plane, p, at) for at, plane in parts)]))
+        found.append(np.concatenate([np.zeros((0, 3)), *(np.tile(plane[:3], (at.size, 1)) for at, plane in parts)]))
+        order = np.argsort(found[0], kind="stable")
+        count = order.size
+        return Facets(*(each[order] for each in found), np.full(count, area), np.full(count, self._of_walls))
+
+    def _inside(self, p, at, but):
+        """Which samples are in front of all walls, `but` this one."""
+        out = np.ones(at.size, bool)
+        for k, plane in enumerate(self._planes):
+            if k != but:
+                out &= _before(plane, p, at) > 0.0
+        return out
+
+    def _own(self, p, at):
+        """Faces of the bodies among the samples `at`, their normals in the body frame."""
+        first, under, normal, area = self._patches
+        if not self._bodies_rub:
+            at = at[:0]
+        begin, end = first[p.sample[at]], first[p.sample[at] + 1]
+        particle = np.repeat(at, end - begin)
+        row = np.concatenate([np.zeros(0, np.int64), *(np.arange(b, e) for b, e in zip(begin, end, strict=True))])
+        return Facets(particle, under[row], normal[row], area[row], self._of_bodies[p.body[particle]])
+
+
+def _before(plane, p, at):
+    """How far particles are in front of a plane, m: (n,)."""
+    return plane[0] * p.x[at] + plane[1] * p.y[at] + plane[2] * p.z[at] - plane[3]
+
+
+def _patches(samples):
+    """The patches of all bodies in the order of their samples: first of each, distance to it, m, normal, area, m2."""
+    each, count = samples.of_body, len(samples)
+    begin = np.cumsum([0, *(len(s.offsets) for s in each)])
+    sample = np.concatenate([np.zeros(0, int), *(s.sample + at for s, at in zip(each, begin[:-1], strict=True))])
+    order = np.argsort(sample, kind="stable")
+    normal = np.concatenate([np.zeros((0, 3)), *(s.normal for s in each)])[order]
+    place = np.concatenate([np.zeros((0, 3)), *(s.place for s in each)])[order]
+    area = np.concatenate([np.zeros(0), *(s.area for s in each)])[order]
+    under = ((place - samples.offsets[sample[order]]) * normal).sum(axis=1)
+    return np.searchsorted(sample[order], np.arange(count + 1)), under, normal, area

@@ -1,0 +1,121 @@
+"""Eddy viscosity for every scheme: nu_t = l^2 |S|, |S| = sqrt(2 S : S), from the gradient of the velocity.
+
+Where it differs between two particles the harmonic mean holds. The gradient is exact for a velocity that is linear in
+space, also beside walls and the surface (with the inverse of the sum of e e W; Bonet & Lok 1999).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from parsim.fluid.friction import KAPPA
+from parsim.fluid.weights.choice import weight_at
+from parsim.geometry.faces import planes_of_walls
+from parsim.machine.jit import each, kernel, prange
+
+_EVEN = 0.05  # of what a full support has: determinant from which the sum of e e W is taken for singular
+_FILTER = 2.0  # width of the filter, in spacings
+
+
+class Length(NamedTuple):
+    """What the length of eddies depends on: walls besides the floor (w, 4), normal and level; floor (0 or 1, 4), the
+    same; depth, m; longest, m."""
+
+    walls: np.ndarray
+    floor: np.ndarray
+    depth: float
+    longest: float
+
+
+def length_of(case):
+    """`Length` for the table `water.eddies` of a case. The depth is that of its fill."""
+    eddies, planes = case.water.eddies, planes_of_walls(case)[:, :4]
+    floor = planes[:, 2] > 0.5
+    longest = eddies.constant * _FILTER * case.spacing if eddies.kind == "smagorinsky" else math.inf
+    return Length(planes[~floor], planes[floor], case.depth, longest)
+
+
+@kernel
+def _mixing_length(length, x, y, z):
+    """kappa d, m, at most the longest; over the floor kappa d sqrt(1 - d / H), which makes the profile logarithmic."""
+    walls, floor, depth, most = length
+    for k in range(len(walls)):
+        most = min(most, KAPPA * (walls[k, 0] * x + walls[k, 1] * y + walls[k, 2] * z - walls[k, 3]))
+    for k in range(len(floor)):
+        d = floor[k, 0] * x + floor[k, 1] * y + floor[k, 2] * z - floor[k, 3]
+        most = min(most, KAPPA * d * math.sqrt(max(1.0 - d / depth, 0.0)))
+    return max(most, 0.0)
+
+
+@kernel
+def _strain(m, u, v, w, least):
+    """|S|, 1/s, from the sums of e e W and of e W times the change of each component; 0 where these say too little."""
+    xx, xy, xz, yy, yz, zz = m
+    a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy  # cofactors
+    d, e, f = xx * zz - xz * xz, xz * xy - xx * yz, xx * yy - xy * xy
+    determinant = xx * a + xy * b + xz * c
+    if determinant <= least:
+        return 0.0
+    ux, vy = a * u[0] + b * u[1] + c * u[2], b * v[0] + d * v[1] + e * v[2]
+    wz = c * w[0] + e * w[1] + f * w[2]
+    xy = b * u[0] + d * u[1] + e * u[2] + (a * v[0] + b * v[1] + c * v[2])
+    xz = c * u[0] + e * u[1] + f * u[2] + (a * w[0] + b * w[1] + c * w[2])
+    yz = c * v[0] + e * v[1] + f * v[2] + (b * w[0] + d * w[1] + e * w[2])
+    return math.sqrt(2.0 * (ux * ux + vy * vy + wz * wz) + xy * xy + xz * xz + yz * yz) / determinant
+
+
+@each
+def eddy_viscosity(at, lists, kinematics, weight, length, n0, dimensions, out):
+    """Eddy viscosity, m2/s, of the water `at`: out (n,)."""
+    start, middle, _, index = lists
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
+    least = _EVEN * (n0 / dimensions) ** dimensions
+    for row in prange(at.size):
+        i = at[row]
+        xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        ux, uy, uz, vx, vy, vz, wx, wy, wz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for c in range(start[i], middle[i]):
+            j = index[c]
+            dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+            r2 = dx * dx + dy * dy + dz * dz
+            _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            gx, gy, gz = g * dx, g * dy, g * dz
+            du, dv, dw = u[j] - u[i], v[j] - v[i], w[j] - w[i]
+            xx, xy, xz = xx + gx * dx, xy + gx * dy, xz + gx * dz
+            yy, yz, zz = yy + gy * dy, yz + gy * dz, zz + gz * dz
+            ux, uy, uz = ux + gx * du, uy + gy * du, uz + gz * du
+            vx, vy, vz = vx + gx * dv, vy + gy * dv, vz + gz * dv
+            wx, wy, wz = wx + gx * dw, wy + gy * dw, wz + gz * dw
+        if dimensions == 2:
+            yy = 1.0
+        strain = _strain((xx, xy, xz, yy, yz, zz), (ux, uy, uz), (vx, vy, vz), (wx, wy, wz), least)
+        size = _mixing_length(length, x[i], y[i], z[i])
+        out[i] = size * size * strain
+
+
+@each
+def mix(at, lists, kinematics, weight, eddy, viscous, acceleration):
+    """Add the stress of eddies to the acceleration of the water `at`; `viscous`: 2 d (d + 2) / n0."""
+    start, middle, _, index = lists
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
+    ax, ay, az = acceleration.x, acceleration.y, acceleration.z
+    for row in prange(at.size):
+        i = at[row]
+        sx, sy, sz, own = 0.0, 0.0, 0.0, eddy[i]
+        for c in range(start[i], middle[i]):
+            j = index[c]
+            both = own + eddy[j]
+            if both <= 0.0:
+                continue
+            dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+            r2 = dx * dx + dy * dy + dz * dz
+            _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            mean = 2.0 * own * eddy[j] / both
+            b = mean * g / r2 * ((u[j] - u[i]) * dx + (v[j] - v[i]) * dy + (w[j] - w[i]) * dz)
+            sx, sy, sz = sx + b * dx, sy + b * dy, sz + b * dz
+        ax[i] += viscous * sx
+        ay[i] += viscous * sy
+        az[i] += viscous * sz
