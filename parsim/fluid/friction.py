@@ -14,6 +14,7 @@ import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import each, kernel, prange
+from parsim.particles.state import SURFACE
 from parsim.particles.tables import Vectors
 
 SLIP = ("qx", "qy", "qz")
@@ -142,28 +143,42 @@ def mirror(at, lists, kinematics, weight, slip):
             wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             every += wt
             sx, sy, sz = sx + wt * u[j], sy + wt * v[j], sz + wt * w[j]
-        qx[i], qy[i], qz[i] = 2.0 * u[i] - sx / every, 2.0 * v[i] - sy / every, 2.0 * w[i] - sz / every
+        if every > 0.0:  # else what is listed lies between the support and its skin
+            sx, sy, sz = sx / every, sy / every, sz / every
+        qx[i], qy[i], qz[i] = 2.0 * u[i] - sx, 2.0 * v[i] - sy, 2.0 * w[i] - sz
 
 
 @kernel
-def _pair(weight, d, slip, velocity, drag):
+def _by_sample(weight, d, slip, velocity, loose, drag, dimensions):
     """Acceleration of water with this `velocity` by a sample at `d` from it: by a wall law where `drag` is zero."""
     r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-    inverse = 1.0 / math.sqrt(r2)
-    wt, g, _ = weight_at(weight, r2, inverse)
+    wt, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
     if drag == 0.0:
         return wt * slip[0], wt * slip[1], wt * slip[2]
-    along = (slip[0] - velocity[0]) * d[0] + (slip[1] - velocity[1]) * d[1] + (slip[2] - velocity[2]) * d[2]
-    b = drag * g * inverse * inverse * along
-    return b * d[0], b * d[1], b * d[2]
+    change = (slip[0] - velocity[0], slip[1] - velocity[1], slip[2] - velocity[2])
+    return shear(drag * g, r2, d, change, loose, dimensions)
+
+
+@kernel
+def shear(size, r2, d, change, loose, dimensions):
+    """Acceleration of a particle by the viscosity of a pair, whose velocities differ by `change`, at `d` from it.
+
+    `size` is 2 d nu W / (r2 n0). Along the change (Morris, Fox & Zhu 1997), which is right to 0.03 % also where a
+    steady flow has brought the particles into rows, as it does; along `d`, as in the momentum sweep, viscosity is then
+    7 % too small. `loose`: whether one of them is at the surface: there only the latter leaves a rigid turn alone.
+    """
+    if loose:
+        b = (dimensions + 2) * size / r2 * (change[0] * d[0] + change[1] * d[1] + change[2] * d[2])
+        return b * d[0], b * d[1], b * d[2]
+    return size * change[0], size * change[1], size * change[2]
 
 
 @each
-def drag_water(at, lists, kinematics, weight, rubbing, drag, acceleration):
+def drag_water(at, lists, kinematics, surface, weight, rubbing, drag, acceleration):
     """Add to the acceleration of the water `at` what the samples it sees give it.
 
-    `rubbing`: slip and scale (n,) of the samples that rub, zero for others; `drag`: 2 d (d + 2) nu / n0, or 0 by a wall
-    law.
+    `rubbing`: slip and share (n,) of samples, zero of those that do not rub; `drag`: 2 d nu / n0, or 0 by a wall law,
+    and d.
     """
     _, middle, end, index = lists
     x, y, z = kinematics.place
@@ -173,13 +188,14 @@ def drag_water(at, lists, kinematics, weight, rubbing, drag, acceleration):
     for row in prange(at.size):
         i = at[row]
         sx, sy, sz = 0.0, 0.0, 0.0
+        own, loose = (u[i], v[i], w[i]), surface[i] >= SURFACE
         for c in range(middle[i], end[i]):
             j = index[c]
             share = scale[j]
             if share == 0.0:
                 continue
-            d, own = (x[j] - x[i], y[j] - y[i], z[j] - z[i]), (u[i], v[i], w[i])
-            fx, fy, fz = _pair(weight, d, (qx[j], qy[j], qz[j]), own, drag)
+            d = (x[j] - x[i], y[j] - y[i], z[j] - z[i])
+            fx, fy, fz = _by_sample(weight, d, (qx[j], qy[j], qz[j]), own, loose, drag[0], drag[1])
             sx, sy, sz = sx + share * fx, sy + share * fy, sz + share * fz
         ax[i] += sx
         ay[i] += sy
@@ -187,7 +203,7 @@ def drag_water(at, lists, kinematics, weight, rubbing, drag, acceleration):
 
 
 @each
-def drag_samples(at, lists, kinematics, weight, rubbing, drag, mass, force):
+def drag_samples(at, lists, kinematics, surface, weight, rubbing, drag, mass, force):
     """Add to the `force` (samples, 3), N, on the samples `at` what these give to the water that they see, times -1."""
     start, middle, _, index = lists
     x, y, z = kinematics.place
@@ -201,8 +217,8 @@ def drag_samples(at, lists, kinematics, weight, rubbing, drag, mass, force):
         sx, sy, sz = 0.0, 0.0, 0.0
         for c in range(start[i], middle[i]):
             j = index[c]
-            d, own = (x[i] - x[j], y[i] - y[j], z[i] - z[j]), (u[j], v[j], w[j])
-            fx, fy, fz = _pair(weight, d, (qx[i], qy[i], qz[i]), own, drag)
+            d, own, loose = (x[i] - x[j], y[i] - y[j], z[i] - z[j]), (u[j], v[j], w[j]), surface[j] >= SURFACE
+            fx, fy, fz = _by_sample(weight, d, (qx[i], qy[i], qz[i]), own, loose, drag[0], drag[1])
             sx, sy, sz = sx + fx, sy + fy, sz + fz
         force[row, 0] -= share * sx
         force[row, 1] -= share * sy

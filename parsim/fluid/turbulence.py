@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.fluid.friction import KAPPA
+from parsim.fluid.friction import KAPPA, shear
 from parsim.fluid.weights.choice import weight_at
 from parsim.geometry.faces import planes_of_walls
 from parsim.machine.jit import each, kernel, prange
+from parsim.particles.state import SURFACE
 
 _EVEN = 0.05  # of what a full support has: determinant from which the sum of e e W is taken for singular
 _FILTER = 2.0  # width of the filter, in spacings
@@ -96,26 +97,31 @@ def eddy_viscosity(at, lists, kinematics, weight, length, n0, dimensions, out):
 
 
 @each
-def mix(at, lists, kinematics, weight, eddy, viscous, acceleration):
-    """Add the stress of eddies to the acceleration of the water `at`; `viscous`: 2 d (d + 2) / n0."""
+def mix(at, lists, kinematics, surface, weight, viscosities, viscous, acceleration):
+    """Add the viscous stress to the acceleration of the water `at`: by the molecular and the eddy `viscosities`, m2/s.
+
+    viscous: 2 d / n0, and d.
+    """
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
+    molecular, eddy = viscosities
     ax, ay, az = acceleration.x, acceleration.y, acceleration.z
     for row in prange(at.size):
         i = at[row]
-        sx, sy, sz, own = 0.0, 0.0, 0.0, eddy[i]
+        sx, sy, sz, own, loose = 0.0, 0.0, 0.0, molecular + eddy[i], surface[i] >= SURFACE
         for c in range(start[i], middle[i]):
             j = index[c]
-            both = own + eddy[j]
-            if both <= 0.0:
+            other = molecular + eddy[j]
+            if own + other <= 0.0:
                 continue
-            dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
-            r2 = dx * dx + dy * dy + dz * dz
+            d = (x[j] - x[i], y[j] - y[i], z[j] - z[i])
+            r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
             _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
-            mean = 2.0 * own * eddy[j] / both
-            b = mean * g / r2 * ((u[j] - u[i]) * dx + (v[j] - v[i]) * dy + (w[j] - w[i]) * dz)
-            sx, sy, sz = sx + b * dx, sy + b * dy, sz + b * dz
-        ax[i] += viscous * sx
-        ay[i] += viscous * sy
-        az[i] += viscous * sz
+            size = viscous[0] * g * 2.0 * own * other / (own + other)
+            change = (u[j] - u[i], v[j] - v[i], w[j] - w[i])
+            fx, fy, fz = shear(size, r2, d, change, loose or surface[j] >= SURFACE, viscous[1])
+            sx, sy, sz = sx + fx, sy + fy, sz + fz
+        ax[i] += sx
+        ay[i] += sy
+        az[i] += sz

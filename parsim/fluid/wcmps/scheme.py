@@ -48,8 +48,9 @@ class WCMPS:
         self.recovery = 2.0 * choice.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self.restitution = choice.restitution
         self.eddies = turbulence.length_of(case) if water.eddies else None
-        by_law = water.friction is None or water.friction.kind == "wall_law"
-        self._rub = 0.0 if by_law else self.viscosity * self._viscous
+        no_slip = water.friction is not None and water.friction.kind == "no_slip"
+        self._resolved = no_slip or water.eddies is not None  # viscosity is then no matter of the momentum sweep
+        self._rub = 2.0 * self.viscosity * self._gradient if no_slip else 0.0, lattice.dimensions
         self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
         self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
         self.close2 = (choice.collision_distance * case.spacing) ** 2
@@ -136,26 +137,22 @@ class WCMPS:
             surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
 
     def _shear(self, domain, near, rubbing):
-        """Add the stress of walls and of eddies to the acceleration of the fluid."""
-        p, at, weight = domain.particles, near.fluid, self.lattice.weight
+        """Add the stress of walls, of eddies and of resolved viscous layers to the acceleration of the fluid."""
+        p, lattice, given = domain.particles, self.lattice, (near.fluid, near.lists, domain.particles.kinematics)
         if self.eddies:
             with self.timers("eddies"):
                 turbulence.eddy_viscosity(
-                    at,
-                    near.lists,
-                    p.kinematics,
-                    weight,
-                    self.eddies,
-                    self.lattice.number,
-                    self.lattice.dimensions,
-                    p.eddy,
+                    *given, lattice.weight, self.eddies, lattice.number, lattice.dimensions, p.eddy
                 )
-                with domain.refreshing("eddy"):
-                    pass
-                turbulence.mix(at, near.lists, p.kinematics, weight, p.eddy, self._viscous, p.acceleration)
+            with domain.refreshing("eddy"):
+                pass
+        if self._resolved:
+            with self.timers("eddies"):
+                viscosities, viscous = (self.viscosity, p.eddy), (2.0 * self._gradient, lattice.dimensions)
+                turbulence.mix(*given, p.surface, lattice.weight, viscosities, viscous, p.acceleration)
         if rubbing:
             with self.timers("friction"):
-                friction.drag_water(at, near.lists, p.kinematics, weight, rubbing, self._rub, p.acceleration)
+                friction.drag_water(*given, p.surface, lattice.weight, rubbing, self._rub, p.acceleration)
 
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
@@ -174,9 +171,8 @@ class WCMPS:
         sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
         force = self.mass * out.force
         if rubbing:
-            friction.drag_samples(
-                at, near.lists, p.kinematics, self.lattice.weight, rubbing, self._rub, self.mass, force
-            )
+            given = at, near.lists, p.kinematics, p.surface, self.lattice.weight
+            friction.drag_samples(*given, rubbing, self._rub, self.mass, force)
         return force, out.lever, self.mass * out.response
 
     def extremes(self, p, near, start):
@@ -275,7 +271,7 @@ class WCMPS:
             self._whole,
             self.close2,
             self._push,
-            self.viscosity * self._viscous,
+            0.0 if self._resolved else self.viscosity * self._viscous,
             0.5 * (1.0 + self.restitution) / dt,
             dt,
             self.density,
