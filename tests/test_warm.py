@@ -48,9 +48,15 @@ def _drawn(dice):
     fill = {"min": [0.0, 0.0, 0.0], "max": [0.2, width, level]}
     if dice.random() < 0.3:
         fill |= {"velocity": [0.1, 0.0, 0.0], "profile": {"kind": dice.choice(("linear", "log")), "roughness": 0.001}}
+    rubbing = {}
+    if dice.random() < 0.4:
+        rubbing["friction"] = {"kind": dice.choice(("wall_law", "no_slip")), "bodies": dice.random() < 0.8}
+    if dice.random() < 0.3:
+        rubbing["eddies"] = {"kind": dice.choice(("mixing_length", "smagorinsky"))}
     case = {
         "dimensions": 2 if flat else 3, "spacing": 0.01, "box": {"max": [0.4, width, 0.2], "faces": faces},
-        "water": {"fill": dice.choice(([fill], [fill], [])), "speed": 1.5, "disorder": dice.choice((0.0, 0.1)),
+        "water": rubbing | {"fill": dice.choice(([fill], [fill], [])), "speed": 1.5,
+                  "disorder": dice.choice((0.0, 0.1)),
                   "scheme": {"weight": dice.choice(("wendland_c4", "wendland_c2", "mps")),
                              "shifting": dice.random() < 0.8}},
         "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},

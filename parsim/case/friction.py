@@ -1,5 +1,6 @@
-"""The tables of a case about the friction of water, and its eddies."""
+"""The tables of a case about the friction of water, and its eddies, and what may be wrong with them."""
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -31,3 +32,39 @@ class Eddies(Table):
         "most constant times two spacings"
     )
     constant: Annotated[Real, Field(gt=0, le=0.5)] = Field(0.15, description="Smagorinsky's constant")
+
+
+def faults(case):
+    """What is wrong with the friction of a completed case: messages."""
+    friction, own = case.water.friction, [n for n, m in case.materials.items() if m.roughness is not None]
+    if not case.water.scheme.WET:
+        given = [f"water.{name}" for name in ("friction", "eddies") if getattr(case.water, name) is not None]
+        return [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
+    if friction is None:
+        return [f"materials.{name}.roughness: nothing rubs the water; water.friction is missing" for name in own]
+    out = []
+    if friction.kind == "no_slip":
+        given = [("water.friction.roughness", friction.roughness)] if friction.roughness else []
+        given += [(f"materials.{name}.roughness", case.materials[name].roughness) for name in own]
+        out += [f'{key} = {value!r}: is for kind = "wall_law"; without slip walls are smooth' for key, value in given]
+    walls = [n for n in FaceName.__args__ if n[0] in "xz" or case.dimensions == 3]
+    walls = [name for name in walls if getattr(case.box.faces, name).holds_water]
+    wrong = [name for name in friction.walls or () if name not in walls]
+    allowed = ", ".join(walls) or "none"
+    return out + [f'water.friction.walls = "{name}": is no wall; allowed: {allowed}' for name in wrong]
+
+
+def doubts(case):
+    """What is allowed but doubtful: messages."""
+    friction = case.water.friction
+    if friction is None or friction.kind == "no_slip":
+        return
+    given = {"water.friction.roughness": friction.roughness}
+    given |= {f"materials.{n}.roughness": m.roughness for n, m in case.materials.items() if m.roughness is not None}
+    most = 30.0 * 1.5 * case.spacing / math.e
+    for key, rough in given.items():
+        if rough > most:
+            yield (
+                f"{key} = {rough!r}: more than {most:.3g} m; the water that walls see, 1.5 spacings off, then lies "
+                "within the roughness, and the stress is that of water at e / 30 of it"
+            )

@@ -14,7 +14,6 @@ import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import each, kernel, prange
-from parsim.particles.state import SURFACE
 from parsim.particles.tables import Vectors
 
 SLIP = ("qx", "qy", "qz")
@@ -47,11 +46,24 @@ class Seen(NamedTuple):
 
 
 @kernel
-def stress_over_density(speed, distance, roughness, viscosity):
+def logarithm(x):
+    """Natural logarithm of 1e-9 < x < 1e9, within 1e-10; by sqrt, for the last bit of log depends on the library."""
+    for _ in range(5):
+        x = math.sqrt(x)
+    y = (x - 1.0) / (x + 1.0)
+    square, total, power = y * y, 0.0, y
+    for k in range(10):
+        total += power / (2 * k + 1)
+        power *= square
+    return 64.0 * total
+
+
+@kernel
+def stress_over_density(speed, distance, log, roughness, viscosity):
     """Wall stress over density, m2/s2, of water that goes at `speed`, m/s, at a `distance`, m, from the wall.
 
-    (kappa u / ln(30 d / ks))^2 where it is rough (Nikuradse 1933); the power law of Werner & Wengle where it is smooth,
-    with its viscous layer; the larger of the two.
+    `log`: the mean of ln(distance). (kappa u / ln(30 d / ks))^2 where it is rough (Nikuradse 1933); the power law of
+    Werner & Wengle where it is smooth, with its viscous layer; the larger of the two.
     """
     if speed <= 0.0:
         return 0.0
@@ -60,26 +72,26 @@ def stress_over_density(speed, distance, roughness, viscosity):
     smooth = max(smooth, viscosity * speed / distance)
     if roughness <= 0.0:
         return smooth
-    rough = KAPPA * speed / max(math.log(30.0 * distance / roughness), _LEAST)
+    rough = KAPPA * speed / max(log + logarithm(30.0 / roughness), _LEAST)
     return max(smooth, rough * rough)
 
 
-@each
+@kernel
 def rub(facets, lists, kinematics, weight, seen, stress):
     """Stress times area, N, of each face on its wall or body: `stress` (f, 3).
 
-    The velocity is that of the water from half a spacing off the face on, by W and by how far beyond, at the distance
-    whose logarithm is the mean. What sees less water than half a lattice is wet for that share.
+    The velocity is that of the water from half a spacing off the face on, by W and by how far beyond, and so are the
+    distance and its logarithm. What sees less water than half a lattice is wet for that share.
     """
     at, under, normal, area, roughness = facets
     spacing, half, _, viscosity, density = seen
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
-    for f in prange(at.size):
+    for f in range(at.size):
         i = at[f]
         nx, ny, nz = normal[f, 0], normal[f, 1], normal[f, 2]
-        every, total, logs = 0.0, 0.0, 0.0
+        every, total, logs, away = 0.0, 0.0, 0.0, 0.0
         sx, sy, sz = 0.0, 0.0, 0.0
         for c in range(start[i], middle[i]):
             j = index[c]
@@ -90,7 +102,8 @@ def rub(facets, lists, kinematics, weight, seen, stress):
             every += wt
             wt *= min(max(far - _FIRST, _THIN), 1.0)
             total += wt
-            logs += wt * math.log(max(far, 0.5 * _FIRST))
+            logs += wt * logarithm(max(far, 0.5 * _FIRST))
+            away += wt * max(far, 0.5 * _FIRST)
             sx, sy, sz = sx + wt * (u[j] - u[i]), sy + wt * (v[j] - v[i]), sz + wt * (w[j] - w[i])
         stress[f, 0] = stress[f, 1] = stress[f, 2] = 0.0
         if total <= 0.0:
@@ -99,8 +112,8 @@ def rub(facets, lists, kinematics, weight, seen, stress):
         along = sx * nx + sy * ny + sz * nz
         sx, sy, sz = sx - along * nx, sy - along * ny, sz - along * nz
         speed = math.sqrt(sx * sx + sy * sy + sz * sz)
-        distance = spacing * math.exp(logs / total)
-        force = density * stress_over_density(speed, distance, roughness[f], viscosity) * area[f]
+        log, distance = logs / total + logarithm(spacing), spacing * away / total
+        force = density * stress_over_density(speed, distance, log, roughness[f], viscosity) * area[f]
         if speed > 0.0:
             force *= min(every / half, 1.0) / speed
             stress[f, 0], stress[f, 1], stress[f, 2] = force * sx, force * sy, force * sz
@@ -119,7 +132,8 @@ def spread(facets, lists, place, weight, mass, stress, slip):
             slip.x[i] = slip.y[i] = slip.z[i] = 0.0
             for c in range(lists.start[i], lists.middle[i]):
                 j = lists.index[c]
-                r2 = (x[j] - x[i]) ** 2 + (y[j] - y[i]) ** 2 + (z[j] - z[i]) ** 2
+                dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+                r2 = dx * dx + dy * dy + dz * dz
                 every += weight_at(weight, r2, 1.0 / math.sqrt(r2))[0]
         if every > 0.0:
             slip.x[i] -= stress[f, 0] / (mass * every)
@@ -127,19 +141,20 @@ def spread(facets, lists, place, weight, mass, stress, slip):
             slip.z[i] -= stress[f, 2] / (mass * every)
 
 
-@each
+@kernel
 def mirror(at, lists, kinematics, weight, slip):
     """Slip, m/s, of the samples `at` for water that is at rest at the wall."""
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     qx, qy, qz = slip.x, slip.y, slip.z
-    for row in prange(at.size):
+    for row in range(at.size):
         i = at[row]
         every, sx, sy, sz = 0.0, 0.0, 0.0, 0.0
         for c in range(start[i], middle[i]):
             j = index[c]
-            r2 = (x[j] - x[i]) ** 2 + (y[j] - y[i]) ** 2 + (z[j] - z[i]) ** 2
+            dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+            r2 = dx * dx + dy * dy + dz * dz
             wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             every += wt
             sx, sy, sz = sx + wt * u[j], sy + wt * v[j], sz + wt * w[j]
@@ -149,36 +164,21 @@ def mirror(at, lists, kinematics, weight, slip):
 
 
 @kernel
-def _by_sample(weight, d, slip, velocity, loose, drag, dimensions):
+def _by_sample(weight, d, slip, velocity, drag):
     """Acceleration of water with this `velocity` by a sample at `d` from it: by a wall law where `drag` is zero."""
     r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
     wt, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
     if drag == 0.0:
         return wt * slip[0], wt * slip[1], wt * slip[2]
-    change = (slip[0] - velocity[0], slip[1] - velocity[1], slip[2] - velocity[2])
-    return shear(drag * g, r2, d, change, loose, dimensions)
-
-
-@kernel
-def shear(size, r2, d, change, loose, dimensions):
-    """Acceleration of a particle by the viscosity of a pair, whose velocities differ by `change`, at `d` from it.
-
-    `size` is 2 d nu W / (r2 n0). Along the change (Morris, Fox & Zhu 1997), which is right to 0.03 % also where a
-    steady flow has brought the particles into rows, as it does; along `d`, as in the momentum sweep, viscosity is then
-    7 % too small. `loose`: whether one of them is at the surface: there only the latter leaves a rigid turn alone.
-    """
-    if loose:
-        b = (dimensions + 2) * size / r2 * (change[0] * d[0] + change[1] * d[1] + change[2] * d[2])
-        return b * d[0], b * d[1], b * d[2]
-    return size * change[0], size * change[1], size * change[2]
+    size = drag * g
+    return size * (slip[0] - velocity[0]), size * (slip[1] - velocity[1]), size * (slip[2] - velocity[2])
 
 
 @each
-def drag_water(at, lists, kinematics, surface, weight, rubbing, drag, acceleration):
+def drag_water(at, lists, kinematics, weight, rubbing, drag, acceleration):
     """Add to the acceleration of the water `at` what the samples it sees give it.
 
-    `rubbing`: slip and share (n,) of samples, zero of those that do not rub; `drag`: 2 d nu / n0, or 0 by a wall law,
-    and d.
+    `rubbing`: slip and share (n,) of samples, zero of those that do not rub; `drag`: 2 d nu / n0, or 0 by a wall law.
     """
     _, middle, end, index = lists
     x, y, z = kinematics.place
@@ -188,37 +188,37 @@ def drag_water(at, lists, kinematics, surface, weight, rubbing, drag, accelerati
     for row in prange(at.size):
         i = at[row]
         sx, sy, sz = 0.0, 0.0, 0.0
-        own, loose = (u[i], v[i], w[i]), surface[i] >= SURFACE
+        own = (u[i], v[i], w[i])
         for c in range(middle[i], end[i]):
             j = index[c]
             share = scale[j]
             if share == 0.0:
                 continue
             d = (x[j] - x[i], y[j] - y[i], z[j] - z[i])
-            fx, fy, fz = _by_sample(weight, d, (qx[j], qy[j], qz[j]), own, loose, drag[0], drag[1])
+            fx, fy, fz = _by_sample(weight, d, (qx[j], qy[j], qz[j]), own, drag)
             sx, sy, sz = sx + share * fx, sy + share * fy, sz + share * fz
         ax[i] += sx
         ay[i] += sy
         az[i] += sz
 
 
-@each
-def drag_samples(at, lists, kinematics, surface, weight, rubbing, drag, mass, force):
-    """Add to the `force` (samples, 3), N, on the samples `at` what these give to the water that they see, times -1."""
+@kernel
+def drag_samples(at, lists, kinematics, weight, rubbing, drag, force):
+    """Take from the `force` over mass (samples, 3), m/s2, on the samples `at` what these give to the water."""
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     (qx, qy, qz), scale = rubbing
-    for row in prange(at.size):
+    for row in range(at.size):
         i = at[row]
-        share = scale[i] * mass
+        share = scale[i]
         if share == 0.0:
             continue
         sx, sy, sz = 0.0, 0.0, 0.0
         for c in range(start[i], middle[i]):
             j = index[c]
-            d, own, loose = (x[i] - x[j], y[i] - y[j], z[i] - z[j]), (u[j], v[j], w[j]), surface[j] >= SURFACE
-            fx, fy, fz = _by_sample(weight, d, (qx[i], qy[i], qz[i]), own, loose, drag[0], drag[1])
+            d, own = (x[i] - x[j], y[i] - y[j], z[i] - z[j]), (u[j], v[j], w[j])
+            fx, fy, fz = _by_sample(weight, d, (qx[i], qy[i], qz[i]), own, drag)
             sx, sy, sz = sx + fx, sy + fy, sz + fz
         force[row, 0] -= share * sx
         force[row, 1] -= share * sy

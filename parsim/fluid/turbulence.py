@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.fluid.friction import KAPPA, shear
+from parsim.fluid.friction import KAPPA
 from parsim.fluid.weights.choice import weight_at
 from parsim.geometry.faces import planes_of_walls
 from parsim.machine.jit import each, kernel, prange
@@ -94,6 +94,20 @@ def eddy_viscosity(at, lists, kinematics, weight, length, n0, dimensions, out):
         strain = _strain((xx, xy, xz, yy, yz, zz), (ux, uy, uz), (vx, vy, vz), (wx, wy, wz), least)
         size = _mixing_length(length, x[i], y[i], z[i])
         out[i] = size * size * strain
+
+
+@kernel
+def shear(size, r2, d, change, loose, dimensions):
+    """Acceleration of a particle by the viscosity of a pair, whose velocities differ by `change`, at `d` from it.
+
+    `size` is 2 d nu W / (r2 n0). Along the change (Morris, Fox & Zhu 1997), which is right to 0.03 % also where a
+    steady flow has brought the particles into rows, as it does; along `d`, as in the momentum sweep, viscosity is then
+    7 % too small. `loose`: whether one of them is at the surface: there only the latter leaves a rigid turn alone.
+    """
+    if loose:
+        b = (dimensions + 2) * size / r2 * (change[0] * d[0] + change[1] * d[1] + change[2] * d[2])
+        return b * d[0], b * d[1], b * d[2]
+    return size * change[0], size * change[1], size * change[2]
 
 
 @each

@@ -39,6 +39,7 @@ _PERIODIC: dict[str, Any] = {
     "bodies": [],
     "output": {"sensors": [{"name": "one", "x": 0.05}]},
 }
+_RUBBING: dict[str, Any] = {"eddies": {"kind": "mixing_length"}}
 
 
 def prepare() -> None:
@@ -156,7 +157,11 @@ def exercise(part: str) -> None:
 
     if part == "solids":
         _touch(parse(_CASE))
-        cases = [_CASE | {"water": _CASE["water"] | {"scheme": {"weight": name}}} for name in WEIGHTS]
+        cases = [
+            _CASE | {"water": _CASE["water"] | _RUBBING | {"friction": {"kind": kind}, "scheme": {"weight": name}}}
+            for name in WEIGHTS
+            for kind in ("wall_law", "no_slip")
+        ]
     else:
         cases = [_CASE, _CASE | _PERIODIC]
     for data in cases:

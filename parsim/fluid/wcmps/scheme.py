@@ -50,7 +50,7 @@ class WCMPS:
         self.eddies = turbulence.length_of(case) if water.eddies else None
         no_slip = water.friction is not None and water.friction.kind == "no_slip"
         self._resolved = no_slip or water.eddies is not None  # viscosity is then no matter of the momentum sweep
-        self._rub = 2.0 * self.viscosity * self._gradient if no_slip else 0.0, lattice.dimensions
+        self._rub = 2.0 * self.viscosity * self._gradient if no_slip else 0.0
         self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
         self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
         self.close2 = (choice.collision_distance * case.spacing) ** 2
@@ -144,15 +144,15 @@ class WCMPS:
                 turbulence.eddy_viscosity(
                     *given, lattice.weight, self.eddies, lattice.number, lattice.dimensions, p.eddy
                 )
-            with domain.refreshing("eddy"):
-                pass
         if self._resolved:
+            with domain.refreshing("eddy", "surface"):
+                pass
             with self.timers("eddies"):
                 viscosities, viscous = (self.viscosity, p.eddy), (2.0 * self._gradient, lattice.dimensions)
                 turbulence.mix(*given, p.surface, lattice.weight, viscosities, viscous, p.acceleration)
         if rubbing:
             with self.timers("friction"):
-                friction.drag_water(*given, p.surface, lattice.weight, rubbing, self._rub, p.acceleration)
+                friction.drag_water(*given, lattice.weight, rubbing, self._rub, p.acceleration)
 
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
@@ -169,11 +169,10 @@ class WCMPS:
         forces, count = self._forces(dt), at.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
         sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
-        force = self.mass * out.force
         if rubbing:
-            given = at, near.lists, p.kinematics, p.surface, self.lattice.weight
-            friction.drag_samples(*given, rubbing, self._rub, self.mass, force)
-        return force, out.lever, self.mass * out.response
+            given = at, near.lists, p.kinematics, self.lattice.weight
+            friction.drag_samples(*given, rubbing, self._rub, out.force)
+        return self.mass * out.force, out.lever, self.mass * out.response
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
