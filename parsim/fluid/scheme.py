@@ -65,6 +65,9 @@ class Scheme(Protocol):
     def step(self, flow, solids, time, dt):
         """Advance the water by dt, s, and with `solids` all that is in it."""
 
+    def rubbed(self, flow, solids, at):
+        """Force of friction, N, on the samples `at`: (n, 3)."""
+
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's water, infinite when not finite, and largest distance from `start`, m."""
 

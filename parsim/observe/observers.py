@@ -7,17 +7,22 @@ from typing import TYPE_CHECKING, Any
 from parsim.observe.bodies import Bodies
 from parsim.observe.counts import Counts
 from parsim.observe.energy import Energy
+from parsim.observe.fluxes import Fluxes
+from parsim.observe.forces import Forces
 from parsim.observe.front import Front
 from parsim.observe.gauges import Gauges
 from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
+from parsim.observe.probes import Probes
+from parsim.observe.velocities import Velocities
 
 if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.run.simulation import Simulation
 
-OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front)  # what is seen at a time; what has left is told at once
+# what is seen at a time; what has left is told at once
+OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities)
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
 

@@ -4,7 +4,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from parsim.case.types import Name, Number, Table, choice
+from parsim.case.friction import FaceName
+from parsim.case.types import Name, Number, Positive, Table, Vector, choice
 
 
 class Gauge(Table):
@@ -18,4 +19,45 @@ class Gauge(Table):
     y: Number | None = Field(None, description="place, m; left out: the middle of the box")
 
 
-Sensor = choice(Gauge)
+class Probe(Table):
+    """Where the pressure of the water is written."""
+
+    kind: Literal["pressure"] = Field(description="the pressure of the water at a point, of a wall too")
+    name: Name = Field(description="name, used in results")
+    x: Number = Field(description="place, m")
+    y: Number | None = Field(None, description="place, m; left out: the middle of the box")
+    z: Number = Field(description="place, m")
+    body: Name | None = Field(None, description="body with which it moves, from that place at the start")
+
+
+class Patch(Table):
+    """Part of a wall on which the force of the water is written, by kind."""
+
+    kind: Literal["force"] = Field(description="the force of the water on a wall, by pressure and by friction")
+    name: Name = Field(description="name, used in results")
+    wall: FaceName = Field(description="side of the box")
+    min: Vector | None = Field(None, description="lowest corner of what counts, m; left out: all of it")
+    max: Vector | None = Field(None, description="highest corner of what counts, m")
+
+
+class Section(Table):
+    """A plane x = constant through which flows are written."""
+
+    WIDTH: ClassVar[float] = 3.0  # spacings over which is averaged
+
+    kind: Literal["flux"] = Field(description="discharge, wetted area and momentum flux through a plane")
+    name: Name = Field(description="name, used in results")
+    x: Number = Field(description="place, m")
+
+
+class Line(Table):
+    """A plumb line on which the velocity of the water is written."""
+
+    kind: Literal["velocity"] = Field(description="the velocity of the water along a plumb line")
+    name: Name = Field(description="name, used in results")
+    x: Number = Field(description="place, m")
+    y: Number | None = Field(None, description="place, m; left out: the middle of the box")
+    width: Positive = Field(description="edge of the square column over which is averaged, m")
+
+
+Sensor = choice(Gauge, Probe, Patch, Section, Line)

@@ -97,7 +97,7 @@ class Simulation:
             self._balance(self.rebuilds % self.case.run.balance_every == 0)
             self._rebuild(self.fluid)
         keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
-        self.scheme.step(self._flow(keep), self.solids, self.time, dt)
+        self.scheme.step(self.flow(keep), self.solids, self.time, dt)
         if self.time < 0.0 <= self.time + dt:
             flow(self.case, self.domain.particles)
         self.time += dt
@@ -106,7 +106,8 @@ class Simulation:
         with self.domain.refreshing(*self.scheme.STATE):
             self._look()
 
-    def _flow(self, keep=1.0):
+    def flow(self, keep: float = 1.0) -> Flow:
+        """The water as the scheme sees it; `keep`: see `Flow`."""
         return Flow(self.domain.particles, self.near, self.domain, self.speed, keep)
 
     def _outrun(self, dt):
@@ -132,7 +133,7 @@ class Simulation:
             if self.gate:
                 near.cut_by_gate(domain.particles, self.models.reach, self.gate, self.time)
                 self._closed = self.gate.closed(self.time)
-            self.solids.find(self._flow())
+            self.solids.find(self.flow())
         with self.timers("sums"):
             numbers = near.fluid.size + near.boundary.size, near.fluid.size, len(domain.gone)
             self.active, self.fluid_count, gone = domain.count(*numbers)

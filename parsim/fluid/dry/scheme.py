@@ -36,6 +36,10 @@ class Dry:
         """Bodies over dt, s, under gravity and contacts."""
         solids.advance(flow, time, dt)
 
+    def rubbed(self, flow, solids, at):
+        """Nothing, (0, 3)."""
+        return np.zeros((at.size, 3))
+
     def extremes(self, p, near, start):
         """No water moves."""
         return 0.0, 0.0

@@ -174,6 +174,14 @@ class WCMPS:
             friction.drag_samples(*given, rubbing, self._rub, out.force)
         return self.mass * out.force, out.lever, self.mass * out.response
 
+    def rubbed(self, flow, solids, at):
+        """Force of friction, N, on the samples `at` as it was found last: (n, 3)."""
+        out, p = np.zeros((at.size, 3)), flow.particles
+        if rubbing := solids.rubbing(p):
+            given = at, flow.near.lists, p.kinematics, self.lattice.weight
+            friction.drag_samples(*given, rubbing, self._rub, out)
+        return self.mass * out
+
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
         return [math.sqrt(e) for e in updates.extremes(near.fluid, p.velocity, p.place, start)]

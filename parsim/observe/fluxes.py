@@ -1,0 +1,46 @@
+"""What flows through planes across the box."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from parsim.case.scales import scales
+from parsim.observe.observer import columns
+from parsim.observe.sensors import Section
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
+
+
+class Fluxes:
+    """One row for each plane: discharge, wetted area, mean velocity and flux of momentum, over three spacings of x."""
+
+    name = "fluxes"
+    columns = columns(section="-", x="m", discharge="m3/s", area="m2", velocity="m/s", momentum="N")
+
+    def __init__(self, case: Case) -> None:
+        self._sections = [sensor for sensor in case.output.sensors if isinstance(sensor, Section)]
+        self._width, self._density, scale = Section.WIDTH * case.spacing, case.water.density, scales(case)
+        volume, speed = scale.mass / case.water.density, scale.length / scale.time
+        self._units = np.array([volume, volume * speed, volume * speed * speed]) / scale.length
+
+    def rows(self, s: Simulation) -> list[list[Any]]:
+        """See `Observer`."""
+        if not self._sections:
+            return []
+        p, at, values, index = s.domain.particles, s.near.fluid, [np.zeros((0, 3))], [np.zeros(0, np.int64)]
+        for k, section in enumerate(self._sections):
+            here = at[np.abs(p.x[at] - section.x) < 0.5 * self._width]
+            share = s.scheme.lattice.volume / s.scheme.compression(p, here) / self._width
+            u = p.u[here]
+            values.append(np.stack([share, share * u, share * u * u], axis=1))
+            index.append(np.full(here.size, k))
+        total = s.domain.sum(np.concatenate(values), self._units, np.concatenate(index), len(self._sections))
+        rows = []
+        for section, (area, discharge, momentum) in zip(self._sections, total.tolist(), strict=True):
+            speed = discharge / area if area > 0.0 else 0.0
+            rows.append([section.name, float(section.x), discharge, area, speed, self._density * momentum])
+        return rows

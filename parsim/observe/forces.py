@@ -1,0 +1,68 @@
+"""Forces of the water on parts of walls, and what of those on bodies is friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from parsim.case.scales import scales
+from parsim.geometry.faces import SIDES, planes_of_walls, walled_sides
+from parsim.observe.observer import columns
+from parsim.observe.sensors import Patch
+from parsim.particles.state import WALL
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.run.simulation import Simulation
+
+
+class Forces:
+    """Two rows for each patch: pressure, by the samples of the first layer behind the wall, and friction."""
+
+    name = "forces"
+    columns = columns(patch="-", kind="-", fx="N", fy="N", fz="N")
+
+    def __init__(self, case: Case) -> None:
+        self._patches = [sensor for sensor in case.output.sensors if isinstance(sensor, Patch)]
+        named = [SIDES[axis][side > 0] for axis, side, _ in walled_sides(case)]
+        self._planes = dict(zip(named, planes_of_walls(case), strict=True))
+        self._unit, self._spacing = scales(case).force, case.spacing
+        self._head = case.water.density * np.array(case.gravity)
+        self._area = case.spacing ** (case.dimensions - 1)
+
+    def rows(self, s: Simulation) -> list[list[Any]]:
+        """See `Observer`."""
+        if not self._patches:
+            return []
+        p = s.domain.particles
+        at = s.near.boundary[p.kind[s.near.boundary] == WALL]
+        place = np.stack([p.x[at], p.y[at], p.z[at]], axis=1)
+        rubbed = s.scheme.rubbed(s.flow(), s.solids, at)
+        values, index = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
+        for k, patch in enumerate(self._patches):
+            behind, within = self._behind(place, patch)
+            first = within & (behind < self._spacing)
+            inward = self._planes[patch.wall][:3]
+            pressure = np.maximum(p.p[at[first]] + self._head @ inward * behind[first], 0.0)  # at the wall itself
+            values += [-pressure[:, None] * inward * self._area, rubbed[within]]
+            index += [np.full(first.sum(), 2 * k), np.full(within.sum(), 2 * k + 1)]
+        total = s.domain.sum(np.concatenate(values), self._unit, np.concatenate(index), 2 * len(self._patches))
+        return [
+            [patch.name, kind, *map(float, total[2 * k + row])]
+            for k, patch in enumerate(self._patches)
+            for row, kind in enumerate(("pressure", "friction"))
+        ]
+
+    def _behind(self, place, patch):
+        """How far places (n, 3) lie behind the wall of a patch, m, and whether they are right behind it."""
+        plane = self._planes[patch.wall]
+        behind = plane[3] - place @ plane[:3]
+        along = np.abs(plane[:3]) == 0.0
+        low = np.full(3, -np.inf) if patch.min is None else np.array(patch.min)
+        high = np.full(3, np.inf) if patch.max is None else np.array(patch.max)
+        within = ((place >= low) & (place < high) | ~along).all(axis=1)
+        for name, other in self._planes.items():
+            if name != patch.wall:
+                within &= place @ other[:3] > other[3]
+        return behind, within & (behind > 0.0)
