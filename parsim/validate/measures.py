@@ -111,9 +111,43 @@ def drift(run: Run, body: str, after: float) -> float:
     return float(np.hypot(track["x"] - track["x"][0], track["z"] - track["z"][0])[late].max())
 
 
+def mean_of(run: Run, series: str, column: str, after: float, rows: dict[str, str] | None = None) -> float:
+    """Mean of a column of a series after a time, s, of the rows where other columns are as told."""
+    read = run.series(series)
+    here = read["time"] >= after
+    for name, value in (rows or {}).items():
+        here &= read[name] == value
+    return float(read[column][here].mean())
+
+
+def off_log_law(run: Run, line: str, after: float, shear: float, roughness: float, depth: float) -> float:
+    """Largest distance, over the mean, of the velocity on a line from u*/0.41 ln(30 z / ks) for 0.1 < z/H < 0.9."""
+    z, u = _profile(run, line, after)
+    here = (z > 0.1 * depth) & (z < 0.9 * depth)
+    exact = shear / 0.41 * np.log(30.0 * z[here] / roughness)
+    mean = shear / 0.41 * (math.log(30.0 * depth / roughness) - 1.0)
+    return float(np.abs(u[here] - exact).max() / mean)
+
+
+def off_parabola(run: Run, line: str, after: float, mean: float, height: float) -> float:
+    """Root of the mean squared distance, over the mean, of the velocity on a line from 6 U (z/H)(1 - z/H)."""
+    z, u = _profile(run, line, after)
+    return float(np.sqrt(np.mean((u / mean - 6.0 * z / height * (1.0 - z / height)) ** 2)))
+
+
+def _profile(run: Run, line: str, after: float) -> tuple[np.ndarray, np.ndarray]:
+    """Heights and mean velocities downstream on a line after a time, s."""
+    series = run.series("velocities")
+    here = (series["line"] == line) & (series["time"] >= after)
+    z, row = np.unique(series["z"][here], return_inverse=True)
+    count = series["particles"][here]
+    return z, np.bincount(row, series["u"][here] * count) / np.bincount(row, count)
+
+
 MEASURES = {
     function.__name__: function
     for function in (
-        apex, last_speed, mean_place, run_out, pile_height, floor_force, carried, tilt, height_over, drift,
+        apex, last_speed, mean_place, run_out, pile_height, floor_force, carried, tilt, height_over, drift, mean_of,
+        off_log_law, off_parabola,
     )
 }  # fmt: skip

@@ -16,7 +16,8 @@ from parsim.report.sections import (
     pictures,
     profiles,
     published,
+    sensors,
     speed,
 )
 
-SECTIONS = (outcome, published, pictures, bodies, profiles, front, energy, counts, gauges, loads, speed, about)
+SECTIONS = (outcome, published, pictures, bodies, profiles, front, energy, counts, gauges, sensors, loads, speed, about)

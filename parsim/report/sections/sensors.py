@@ -1,0 +1,73 @@
+"""What sensors have read besides levels: pressures, forces on walls, discharges, velocities."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from parsim.report.curves import LINES, figure
+from parsim.report.measures import columns
+from parsim.report.page import section
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from parsim.output.reader import Run
+    from parsim.report.build import Page
+
+# series, column that names the curves, second name, what is drawn, label of the axis
+_OVER_TIME = (
+    ("pressures", "probe", None, "pressure", "pressure (Pa)"),
+    ("forces", "patch", "kind", "fx", "fx (N)"),
+    ("forces", "patch", "kind", "fz", "fz (N)"),
+    ("fluxes", "section", None, "discharge", "discharge (m3/s)"),
+)
+
+
+def parts(page: Page) -> str:
+    """Their curves, and the last velocities over the height."""
+    told = "What the sensors read; velocities along plumb lines are the mean of the last tenth of the run."
+    return section("Sensors", page.figure("sensors", sensors(page.run), "Curves of the sensors.", told))
+
+
+def sensors(run: Run) -> Figure | None:
+    """A row of axes for each quantity that was measured."""
+    found = [(*each[1:], series) for each in _OVER_TIME if (series := columns(run, each[0])) is not None]
+    lines = columns(run, "velocities")
+    if not found and lines is None:
+        return None
+    drawn, axes = figure(len(found) + (lines is not None), 1, 2.4)
+    for each, (name, second, quantity, label, series) in zip(axes[:, 0], found, strict=False):
+        _over_time(each, series, (name, second), quantity)
+        each.set_xlabel("time (s)")
+        each.set_ylabel(label)
+        each.legend(fontsize=7, frameon=False, ncols=4)
+    if lines is not None:
+        _profiles(axes[-1, 0], lines)
+    return drawn
+
+
+def _over_time(axes: Axes, series: dict[str, Any], names: tuple[str, str | None], quantity: str) -> None:
+    """A curve for each thing, or each thing and kind."""
+    first, second = names
+    keys = [first] if second is None else [first, second]
+    for number, key in enumerate(dict.fromkeys(zip(*(series[k].tolist() for k in keys), strict=True))):
+        here = np.logical_and.reduce([series[k] == value for k, value in zip(keys, key, strict=True)])
+        style = LINES[number // 5 % 4]
+        axes.plot(series["time"][here], series[quantity][here], style, linewidth=1.2, label=", ".join(key))
+
+
+def _profiles(axes: Axes, series: dict[str, Any]) -> None:
+    """Mean velocity downstream over height on each line, of the last tenth of the run."""
+    time = series["time"]
+    late = time >= time[-1] - 0.1 * (time[-1] - time[0])
+    for name in dict.fromkeys(series["line"].tolist()):
+        here = late & (series["line"] == name)
+        heights, row = np.unique(series["z"][here], return_inverse=True)
+        count = np.bincount(row, series["particles"][here])
+        axes.plot(np.bincount(row, series["u"][here] * series["particles"][here]) / count, heights, label=name)
+    axes.set_xlabel("u (m/s)")
+    axes.set_ylabel("z (m)")
+    axes.legend(fontsize=7, frameon=False, ncols=4)
