@@ -9,7 +9,6 @@ from parsim.case.model import parse
 from parsim.coupling.response import added_inertia
 from parsim.domain.comm import Comm
 from parsim.geometry.rotation import from_angles, matrices
-from parsim.particles.tables import Vectors
 from parsim.run.simulation import Simulation
 from parsim.solid.acceleration import Given, accelerate_bodies
 
@@ -59,7 +58,7 @@ def test_accelerations_against_a_plain_solution():
     triangle = np.triu_indices(3)
     added, water = np.empty((3, 24)), np.zeros((6, 6))
     response = s[:, triangle[0], triangle[1]]
-    added_inertia(np.arange(3), np.zeros(3, np.int32), Vectors(*place.T.copy()), centre, response, added)
+    added_inertia(place - centre, response, added)
     for k in range(3):
         j = np.hstack([np.eye(3), -cross(place[k] - centre[0])])
         water += j.T @ s[k] @ j

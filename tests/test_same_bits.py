@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mesh_cases import box_of, written
 
@@ -90,15 +91,20 @@ def test_too_many_ranks_are_refused_with_the_number_that_fits(mpirun, tmp_path):
 
 
 @pytest.mark.long
-def test_every_shape_and_joint_has_the_same_bits(mpirun, tmp_path, capsys):
+@pytest.mark.parametrize(("name", "whole", "part", "kinds"), [
+    ("shapes", "0.15", "0.08", {"contact", "joint"}), ("periodic", "0.15", "0.07", {"contact", "water_friction"}),
+])  # fmt: skip
+def test_shapes_joints_and_what_crosses_periodic_sides_have_the_same_bits(
+    name, whole, part, kinds, mpirun, tmp_path, capsys
+):
     """On one rank, on three, and in two pieces on two and one."""
     case = tmp_path / "case.toml"
-    case.write_text((HERE / "same_bits_shapes.toml").read_text())
+    case.write_text((HERE / f"same_bits_{name}.toml").read_text())
     written(tmp_path, box_of((0.04, 0.03, 0.02)), "box.ply")
-    for ranks, out, until in ((1, "one", "0.15"), (3, "three", "0.15"), (2, "pieces", "0.08")):
+    for ranks, out, until in ((1, "one", whole), (3, "three", whole), (2, "pieces", part)):
         assert mpirun(ranks, ["run", case, "-o", tmp_path / out, "--until", until], timeout=240).returncode == 0
-    assert mpirun(1, ["resume", tmp_path / "pieces", "--until", "0.15"], timeout=240).returncode == 0
+    assert mpirun(1, ["resume", tmp_path / "pieces", "--until", whole], timeout=240).returncode == 0
     loads = parsim.open(tmp_path / "one").series("loads")
-    assert {"contact", "joint"} <= set(loads["kind"])
+    assert kinds <= set(loads["kind"]) and np.abs(loads["fx"][loads["kind"] == "contact"]).max() > 0.0
     for out in ("three", "pieces"):
         assert main(["compare", str(tmp_path / "one"), str(tmp_path / out)]) == 0, capsys.readouterr().out

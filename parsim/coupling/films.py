@@ -72,7 +72,7 @@ class Films:
         self._head = case.water.density * np.array(case.gravity)
         self._layer, self._deep = _layers(lattice)
         self._planes = planes_of_walls(case)
-        self._period = float(period(case)[0])
+        self._period = period(case)
         each = samples.of_body
         first = np.cumsum([0, *(len(s.offsets) for s in each)])
         self.sample = np.concatenate(
@@ -123,7 +123,8 @@ class Films:
         bodies = Bodies(position, turn, b.forms, self._first, self._others, self._period)
         water = Water(p.p, self._head, self._spacing, self._layer, self._deep)
         solids = bodies, self._planes, plate
-        patch_loads(here, patches, near.lists, p.place, solids, (water, self._weight), b.film, found)
+        points = p.place, self.samples.shift
+        patch_loads(here, patches, near.lists, points, solids, (water, self._weight), b.film, found)
         body = self.samples.body[self.sample[here]].astype(np.int64)
         return np.concatenate(found), np.concatenate([body + k * len(b) for k in range(4)])
 
@@ -167,10 +168,11 @@ def water_at(i, x, n, lists, place, weight):
 def patch_loads(here, patches, lists, points, solids, water, film, found):
     """Load of the film on each patch `here`, and what its rim tells of the water: see `Films.loads`.
 
-    `points`: places of the particles; `solids`: see `gap_ahead`; `water`: Water and its weight; `film`: see `Bodies`.
+    `points`: places and shifts of the particles; `solids`: see `gap_ahead`; `water`: Water and its weight; `film`: see
+    `Bodies`.
     """
     sample, face, on_rim, lone, place, normal, area, row, patch, body = patches
-    px, py, pz = points
+    (px, py, pz), shift = points
     centre, turn = solids[0].centre, solids[0].turn
     (pressure, head, spacing, layer, deep), weight = water
     load, wet, dry, heads = found
@@ -184,13 +186,15 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
         i = row[s]
         every, before = 0.0, 0.0
         if i >= 0:
-            every, before = water_at(i, x, n, lists, points, weight)
+            there = (x[0] + shift[i, 0], x[1] + shift[i, 1], x[2] + shift[i, 2])
+            every, before = water_at(i, there, n, lists, points[0], weight)
             before *= spacing / deep
         value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
         if on_rim[m]:
             share = min(_FEED * every / layer, 1.0) if i >= 0 and pressure[i] > 0.0 else 0.0
             if share > 0.0:
-                heads[k, 0] = share * (pressure[i] - head[0] * px[i] - head[1] * py[i] - head[2] * pz[i])
+                ax, ay, az = px[i] - shift[i, 0], py[i] - shift[i, 1], pz[i] - shift[i, 2]
+                heads[k, 0] = share * (pressure[i] - head[0] * ax - head[1] * ay - head[2] * az)
                 heads[k, 1] = share
                 wet[k, f] = share
             if share < 1.0 and value > 0.0 and film[b, 0] != 0.0:

@@ -11,14 +11,14 @@ from parsim.solid.shapes.kernels import ahead
 
 
 class Bodies(NamedTuple):
-    """Centre (b, 3), turn (b, 9) and forms of the bodies; others[first[b]:first[b + 1]] are near b; period, m."""
+    """Centre (b, 3), turn (b, 9) and forms of the bodies; others[first[b]:first[b + 1]] are near b; period (3,), m."""
 
     centre: np.ndarray
     turn: np.ndarray
     forms: Forms
     first: np.ndarray
     others: np.ndarray
-    period: float
+    period: np.ndarray
 
 
 @kernel
@@ -51,10 +51,12 @@ def gap_ahead(x, n, b, solids, spacing):
         if n[0] * side > 0.5:
             gap = min(gap, (level - x[0]) * side / (n[0] * side))
     for d in others[first[b] : first[b + 1]]:
-        dx = x[0] - centre[d, 0]
-        if period < np.inf:
-            dx -= period * np.rint(dx / period)
-        place = to_body(turn[d], dx, x[1] - centre[d, 1], x[2] - centre[d, 2])
+        dx, dy = x[0] - centre[d, 0], x[1] - centre[d, 1]
+        if period[0] < np.inf:
+            dx -= period[0] * np.rint(dx / period[0])
+        if period[1] < np.inf:
+            dy -= period[1] * np.rint(dy / period[1])
+        place = to_body(turn[d], dx, dy, x[2] - centre[d, 2])
         along = to_body(turn[d], n[0], n[1], n[2])
         gap = min(gap, ahead(forms, d, place, along, spacing))
     return gap

@@ -6,13 +6,25 @@ from parsim.machine.jit import kernel
 
 
 @kernel
-def levers(at, body, place, centre, force, out):
-    """Force and torque about the body's centre of each sample `at`: rows of out (n, 6)."""
+def arms_of(at, body, place, shift, centre, out):
+    """Where the samples `at` are from the centres (bodies, 3) of their bodies: out (n, 3), m.
+
+    `shift` (particles, 3): from a body to its periodic image whose sample a particle is, m.
+    """
     x, y, z = place
     for row in range(at.size):
         i = at[row]
         b = body[i]
-        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+        out[row, 0] = x[i] - shift[i, 0] - centre[b, 0]
+        out[row, 1] = y[i] - shift[i, 1] - centre[b, 1]
+        out[row, 2] = z[i] - shift[i, 2] - centre[b, 2]
+
+
+@kernel
+def levers(arms, force, out):
+    """Force and torque about the body's centre of each sample at `arms` (n, 3): rows of out (n, 6)."""
+    for row in range(len(arms)):
+        dx, dy, dz = arms[row]
         fx, fy, fz = force[row]
         out[row, 0], out[row, 1], out[row, 2] = fx, fy, fz
         out[row, 3] = dy * fz - dz * fy
@@ -21,15 +33,12 @@ def levers(at, body, place, centre, force, out):
 
 
 @kernel
-def added_inertia(at, body, place, centre, response, out):
-    """J^T S J of each sample `at`, S its `response`, J = (1, -[r]): upper triangles by rows of out (n, 24)."""
-    x, y, z = place
+def added_inertia(arms, response, out):
+    """J^T S J of each sample, S its `response`, J = (1, -[r]), r in `arms`: upper triangles by rows of out (n, 24)."""
     j, s, sj = np.zeros((3, 6)), np.zeros((3, 3)), np.zeros((3, 6))
     j[0, 0] = j[1, 1] = j[2, 2] = 1.0
-    for row in range(at.size):
-        i = at[row]
-        b = body[i]
-        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
+    for row in range(len(arms)):
+        dx, dy, dz = arms[row]
         j[0, 4], j[0, 5], j[1, 3], j[1, 5], j[2, 3], j[2, 4] = dz, -dy, -dz, dx, dy, -dx
         s[0, 0], s[0, 1], s[0, 2], s[1, 1], s[1, 2], s[2, 2] = response[row]
         s[1, 0], s[2, 0], s[2, 1] = s[0, 1], s[0, 2], s[1, 2]
@@ -45,14 +54,12 @@ def added_inertia(at, body, place, centre, response, out):
 
 
 @kernel
-def respond(at, body, place, centre, change, lever, p):
+def respond(at, body, arms, change, lever, p):
     """Pressure p of the samples `at` after the `change` (bodies, 6) of their bodies' accelerations; lever (n, 3)."""
-    x, y, z = place
     for row in range(at.size):
         i = at[row]
-        b = body[i]
-        dx, dy, dz = x[i] - centre[b, 0], y[i] - centre[b, 1], z[i] - centre[b, 2]
-        c = change[b]
+        dx, dy, dz = arms[row]
+        c = change[body[i]]
         p[i] += (
             lever[row, 0] * (c[0] + c[4] * dz - c[5] * dy)
             + lever[row, 1] * (c[1] + c[5] * dx - c[3] * dz)

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.coupling.response import added_inertia, levers, respond
+from parsim.coupling.response import added_inertia, arms_of, levers, respond
 from parsim.errors import InputError
+from parsim.geometry.faces import period
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, Particles, make_id
@@ -34,13 +35,15 @@ class BodySamples:
 
     Each sample carries its share of the volume of its body (`shapes.shape.Samples`), and is placed from the pose, never
     integrated. `here`: numbers of those that lay in this slab when last asked for. `units` (8, 6) are those of the sums
-    in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the `Samples` of each body.
+    in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the `Samples` of each body. Bodies cross
+    periodic sides: their places go on beyond, and `shift` (particles, 3), m, leads from there to where a sample is.
     """
 
     def __init__(self, case, bodies, layers, units):
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
         self._way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
-        self._units = units
+        self._units, self._start, self._spacing = units, case.start, case.spacing
+        self._low, self._period = np.array(case.box.min), period(case)
         sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
         self.of_body = [sampled(shape) for shape in bodies.shapes]
         self.offsets = np.concatenate([np.zeros((0, 3)), *(s.offsets for s in self.of_body)])
@@ -51,10 +54,13 @@ class BodySamples:
         return len(self.offsets)
 
     def samples(self, slab, time):
-        """Body samples of the slab that may see water; InputError for a body that comes to a periodic side."""
-        self._keep_off(slab, time)
+        """Body samples of the slab that may see water; InputError for a body that begins at a periodic side."""
+        if time <= self._start:
+            self._keep_off()
         b = self.bodies
-        at, place = self._located(slab.reached(b.position[:, 0], b.radius) & ~b.gone)
+        reached = slab.reached(b.position[:, 0], b.radius) if np.isinf(self._period[0]) else np.ones(len(b), bool)
+        at, place = self._located(reached & ~b.gone)
+        place = Vectors(*(x + shift for x, shift in zip(place, self.home(*place).T, strict=True)))
         cells = slab.cells(*place)
         self.here = at[cells >= 0]
         awake = np.flatnonzero(slab.awake(cells))
@@ -63,6 +69,13 @@ class BodySamples:
             at.size, id=make_id(BODY, at), kind=BODY, body=self.body[at], sample=at, x=x, y=y, z=z, scale=self.scale[at]
         )
 
+    def home(self, x, y, z):
+        """Shifts (n, 3), m, by whole periods that bring places into the box."""
+        out, places = np.zeros((len(x), 3)), (x, y, z)
+        for axis in np.flatnonzero(np.isfinite(self._period)):
+            out[:, axis] = -self._period[axis] * np.floor((places[axis] - self._low[axis]) / self._period[axis])
+        return out
+
     def _located(self, which):
         """Numbers (n,) of the samples of `which` bodies (bodies,) bool, and where they are now: three arrays (n,)."""
         at = np.flatnonzero(which[self.body])
@@ -70,16 +83,26 @@ class BodySamples:
         locate(self.offsets[at], self.body[at], self.bodies.position, matrices(self.bodies.quaternion), place)
         return at, place
 
-    def _keep_off(self, slab, time):
-        """Refuse a body that comes to a periodic side; the same on every rank."""
-        at, place = self._located(slab.beside_period(*self.bodies.position.T, self.bodies.radius) & ~self.bodies.gone)
-        beside = slab.beside_period(*place)
+    def _keep_off(self):
+        """Refuse a body that begins at a periodic side: the water that it takes the place of is cut out on one side."""
+        at, place = self._located(~self.bodies.gone)
+        beside = np.zeros(at.size, bool)
+        for axis in np.flatnonzero(np.isfinite(self._period)):
+            above = place[axis] - self._low[axis]
+            beside |= (above < self._spacing) | (above > self._period[axis] - self._spacing)
         if beside.any():
             name = self.bodies.names[self.body[at[beside.argmax()]]]
-            raise InputError(
-                f"bodies.{name}: reaches a periodic side at t = {time:.6g} s; water and bodies do not see "
-                "each other across it: keep off, or use walls"
-            )
+            raise InputError(f"bodies.{name}: begins at a periodic side; it may cross it later, but must begin off it")
+
+    def note_shifts(self, p):
+        """Note, after a rebuild, from which periodic image of its body each sample among the particles `p` is."""
+        self.shift = np.zeros((len(p), 3))
+        at = np.flatnonzero(p.kind == BODY)
+        place = Vectors(*np.empty((3, at.size)))
+        locate(self.offsets[p.sample[at]], p.body[at], self.bodies.position, matrices(self.bodies.quaternion), place)
+        for axis in np.flatnonzero(np.isfinite(self._period)):
+            apart = (p.x, p.y, p.z)[axis][at] - place[axis]
+            self.shift[at, axis] = self._period[axis] * np.rint(apart / self._period[axis])
 
     def place(self, p, position, quaternion):
         """Put the body samples among the particles `p`, halo included, where the given pose has them.
@@ -87,7 +110,7 @@ class BodySamples:
         Velocity and acceleration are those of the rigid motion; returns nothing.
         """
         motion = self._motion(position, quaternion)
-        place_samples(p.kind, p.body, p.sample, self.offsets, motion, p.kinematics, p.acceleration)
+        place_samples(p.kind, (p.body, p.sample), self.offsets, self.shift, motion, p.kinematics, p.acceleration)
 
     def _motion(self, position, quaternion):
         b = self.bodies
@@ -102,14 +125,21 @@ class BodySamples:
         """
         p, at, count = domain.particles, near.body, len(centre)
         each, added = np.empty((at.size, 6)), np.empty((at.size, 24))
-        levers(at, p.body, p.place, centre, force, each)
-        added_inertia(at, p.body, p.place, centre, response, added)
+        arms = self.arms(p, at, centre)
+        levers(arms, force, each)
+        added_inertia(arms, response, added)
         body = p.body[at].astype(np.int64)
         rows = np.concatenate([body, rows, *(body + k * count for k in range(4, 8))])
         values = np.concatenate([each, others, *np.split(added, 4, axis=1)])
         units = np.repeat(self._units, count, axis=0)
         load, *rims, a, b, c, d = np.split(domain.sum(values, units, rows, 8 * count), 8)
         return load, rims, np.concatenate([a, b, c, d], axis=1)
+
+    def arms(self, p, at, centre):
+        """Where the samples `at` are from the centres (bodies, 3) of their bodies: (n, 3), m."""
+        out = np.empty((at.size, 3))
+        arms_of(at, p.body, p.place, self.shift, centre, out)
+        return out
 
     def answer(self, p, near, pose, load, added, lever, step):
         """Find the accelerations of the bodies, give the samples those and their pressures; loads (bodies, 6), N, N m.
@@ -125,7 +155,7 @@ class BodySamples:
         (position, quaternion), others = pose, b.contact_load + b.spring_load
         given = Given(b.mass, b.inertia, quaternion, others, b.spin, *b.constraints(*step))
         accelerate_bodies(load, added, given, self._gravity, b.acceleration, b.angular_acceleration, change)
-        respond(near.body, p.body, p.place, position, change, lever, p.p)
+        respond(near.body, p.body, self.arms(p, near.body, position), change, lever, p.p)
         self.place(p, position, quaternion)
         return load
 
@@ -140,7 +170,8 @@ class BodySamples:
         are single particles.
         """
         motion = self._motion(position, quaternion)
-        expel(self._beside, near.lists, p.body, motion, self.bodies.forms, self._way_out, p.kinematics)
+        of_samples = p.body, self.shift
+        expel(self._beside, near.lists, of_samples, motion, self.bodies.forms, self._way_out, p.kinematics)
 
 
 @kernel
@@ -156,8 +187,12 @@ def locate(offsets, body, position, turn, place):
 
 
 @kernel
-def place_samples(kind, body, sample, offsets, motion, kinematics, out):
-    """Position, velocity and acceleration `out` of every body sample from the rigid motion of its body."""
+def place_samples(kind, which, offsets, shift, motion, kinematics, out):
+    """Position, velocity and acceleration `out` of every body sample from the rigid motion of its body.
+
+    `which`: body and sample of each particle; `shift`: see `BodySamples`.
+    """
+    body, sample = which
     position, turn, velocity, spin, acceleration, angular = motion
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
@@ -170,7 +205,9 @@ def place_samples(kind, body, sample, offsets, motion, kinematics, out):
         dx = turn[b, 0, 0] * o[0] + turn[b, 0, 1] * o[1] + turn[b, 0, 2] * o[2]
         dy = turn[b, 1, 0] * o[0] + turn[b, 1, 1] * o[1] + turn[b, 1, 2] * o[2]
         dz = turn[b, 2, 0] * o[0] + turn[b, 2, 1] * o[1] + turn[b, 2, 2] * o[2]
-        x[i], y[i], z[i] = position[b, 0] + dx, position[b, 1] + dy, position[b, 2] + dz
+        x[i] = position[b, 0] + dx + shift[i, 0]
+        y[i] = position[b, 1] + dy + shift[i, 1]
+        z[i] = position[b, 2] + dz + shift[i, 2]
         p, q, r = spin[b]
         du, dv, dw = q * dz - r * dy, r * dx - p * dz, p * dy - q * dx
         u[i], v[i], w[i] = velocity[b, 0] + du, velocity[b, 1] + dv, velocity[b, 2] + dw
@@ -181,8 +218,12 @@ def place_samples(kind, body, sample, offsets, motion, kinematics, out):
 
 
 @kernel
-def expel(at, lists, body, motion, forms, way_out, kinematics):
-    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in `way_out` s."""
+def expel(at, lists, of_samples, motion, forms, way_out, kinematics):
+    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in `way_out` s.
+
+    `of_samples`: body and shift of each particle.
+    """
+    body, shift = of_samples
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion
     x, y, z = kinematics.place
@@ -190,11 +231,13 @@ def expel(at, lists, body, motion, forms, way_out, kinematics):
     for i in at:
         last = -1
         for s in range(middle[i], end[i]):
-            b = body[index[s]]
+            j = index[s]
+            b = body[j]
             if b < 0 or b == last:
                 continue
             last = b
-            dx, dy, dz = x[i] - position[b, 0], y[i] - position[b, 1], z[i] - position[b, 2]
+            dx, dy = x[i] - shift[j, 0] - position[b, 0], y[i] - shift[j, 1] - position[b, 1]
+            dz = z[i] - shift[j, 2] - position[b, 2]
             t = turn[b].ravel()
             high, n = distance(forms, b, to_body(t, dx, dy, dz))
             depth = -high

@@ -48,6 +48,7 @@ class Solids:
 
     def find(self, flow):
         """Note, after a rebuild, which of this rank's particles are near bodies."""
+        self.samples.note_shifts(flow.particles)
         if self.pushed():
             self.samples.find(flow.domain, flow.near)
             self.films.find(flow.domain)

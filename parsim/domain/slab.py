@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from parsim.particles.cells import LAYERS, REACH
+from parsim.particles.cells import LAYERS
 
 if TYPE_CHECKING:
     from parsim.particles.cells import Grid
@@ -36,16 +36,6 @@ class Slab:
     def reached(self, x: np.ndarray, radius: np.ndarray) -> np.ndarray:
         """Which of the balls about x (n,) of `radius` (n,), m, reach into the slab: bool (n,)."""
         return (self._grid.layer(x + radius) >= self.begin) & (self._grid.layer(x - radius) < self.end)
-
-    def beside_period(
-        self, x: np.ndarray, y: np.ndarray, z: np.ndarray, radius: np.ndarray | float = 0.0
-    ) -> np.ndarray:
-        """Which of the balls about x, y, z (n,) of `radius`, m, come within a halo of a periodic side: bool (n,)."""
-        g, points, found = self._grid, (x, y, z), np.zeros(x.size, bool)
-        for axis in np.flatnonzero(g.periodic):
-            inside = np.minimum(points[axis] - g.low[axis], g.high[axis] - points[axis]) - radius
-            found |= inside < REACH * g.edge[axis]
-        return found
 
     def awake(self, cells: np.ndarray) -> np.ndarray:
         """Which of `cells` (n,) are in the slab and within reach of water: bool (n,)."""

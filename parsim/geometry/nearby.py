@@ -62,11 +62,11 @@ def _cell(x, low, edge, number):
 
 @kernel
 def near_bodies(position, span, period):
-    """Bodies whose balls of radius `span` (b,), m, meet: others[first[b]:first[b + 1]] of b; period along x, m."""
-    count = len(position)
+    """Bodies whose balls of radius `span` (b,), m, meet: others[first[b]:first[b + 1]] of b; period (3,), m."""
+    count, period_x = len(position), period[0]
     along = position[:, 0].copy()
-    if period < np.inf:
-        along -= period * np.floor(along / period)
+    if period_x < np.inf:
+        along -= period_x * np.floor(along / period_x)
     order, widest = np.argsort(along, kind="mergesort"), 0.0
     for b in range(count):
         widest = max(widest, span[b])
@@ -77,14 +77,16 @@ def near_bodies(position, span, period):
             b = order[row]
             for step in range(1, count):
                 other = (row + step) % count
-                around = period if row + step >= count else 0.0
+                around = period_x if row + step >= count else 0.0
                 if around == np.inf:
                     break
                 c = order[other]
                 dx = along[c] + around - along[b]
-                if dx > span[b] + widest or dx > 0.5 * period:
+                if dx > span[b] + widest or dx > 0.5 * period_x:
                     break
                 dy, dz = position[c, 1] - position[b, 1], position[c, 2] - position[b, 2]
+                if period[1] < np.inf:
+                    dy -= period[1] * np.rint(dy / period[1])
                 if dx * dx + dy * dy + dz * dz < (span[b] + span[c]) ** 2:
                     for one, two in ((b, c), (c, b)):
                         if again:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Fluxes:
-    """One row for each plane: discharge, wetted area, mean velocity and flux of momentum, over three spacings of x."""
+    """One row for each plane: discharge, wetted area, mean velocity and flux of momentum, by a hat of six spacings."""
 
     name = "fluxes"
     columns = columns(section="-", x="m", discharge="m3/s", area="m2", velocity="m/s", momentum="N")
@@ -33,8 +33,9 @@ class Fluxes:
             return []
         p, at, values, index = s.domain.particles, s.near.fluid, [np.zeros((0, 3))], [np.zeros(0, np.int64)]
         for k, section in enumerate(self._sections):
-            here = at[np.abs(p.x[at] - section.x) < 0.5 * self._width]
+            here = at[np.abs(p.x[at] - section.x) < self._width]
             share = s.scheme.lattice.volume / s.scheme.compression(p, here) / self._width
+            share *= 1.0 - np.abs(p.x[here] - section.x) / self._width
             u = p.u[here]
             values.append(np.stack([share, share * u, share * u * u], axis=1))
             index.append(np.full(here.size, k))

@@ -41,5 +41,6 @@ class Loads:
         """Force and torque of the friction of the water on each body: (bodies, 6), N, N m."""
         p, at = s.domain.particles, s.near.body
         each = np.empty((at.size, 6))
-        levers(at, p.body, p.place, s.bodies.position, s.scheme.rubbed(s.flow(), s.solids, at), each)
+        arms = s.solids.samples.arms(p, at, s.bodies.position)
+        levers(arms, s.scheme.rubbed(s.flow(), s.solids, at), each)
         return s.domain.sum(each, self._units, p.body[at].astype(np.int64), len(s.bodies))

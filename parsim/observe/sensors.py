@@ -43,7 +43,7 @@ class Patch(Table):
 class Section(Table):
     """A plane x = constant through which flows are written."""
 
-    WIDTH: ClassVar[float] = 3.0  # spacings over which is averaged
+    WIDTH: ClassVar[float] = 3.0  # spacings to either side that count, less and less
 
     kind: Literal["flux"] = Field(description="discharge, wetted area and momentum flux through a plane")
     name: Name = Field(description="name, used in results")

@@ -191,7 +191,9 @@ class Recorder:
             name = f"frames/bodies_{number:06d}.vtkhdf"
             self.frames["bodies"].append((name, time))
             fields = {field: simulation.bodies.shown(field) for field in _BODY}
-            points, quads, body = simulation.bodies.surface()
+            shift = simulation.solids.samples.home(*simulation.bodies.position.T)
+            fields["position"] = fields["position"] + shift  # where it is seen in the box
+            points, quads, body = simulation.bodies.surface(shift)
             write_bodies(self.out / name, points, quads, body, fields, time, step)
         if self.main:
             self._write_indices()

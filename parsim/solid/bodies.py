@@ -167,16 +167,17 @@ class Bodies:
         drift(self.mass, self.inertia, self.velocity, self.spin, dt, position, quaternion)
         return position, quaternion
 
-    def surface(self):
+    def surface(self, shift=None):
         """The closed surface of what is there: points (n, 3), m; quads (m, 4), anticlockwise seen from outside.
 
-        Also the body of each quad, (m,).
+        Also the body of each quad, (m,). Bodies are drawn with their `shift` (bodies, 3), m, if one is given.
         """
+        place = self.position if shift is None else self.position + shift
         turn, first = matrices(self.quaternion), 0
         points, quads, owners = [np.zeros((0, 3))], [np.zeros((0, 4), np.int64)], [np.zeros(0, np.int64)]
         for b in np.flatnonzero(~self.gone):
             corners, faces = self.shapes[b].surface()
-            points.append(self.position[b] + (corners * turn[b][:, None]).sum(-1).T)
+            points.append(place[b] + (corners * turn[b][:, None]).sum(-1).T)
             quads.append(faces + first)
             owners.append(np.full(len(faces), b))
             first += len(corners)
