@@ -5,6 +5,7 @@ import json
 import subprocess
 from types import SimpleNamespace
 
+import fake_run
 import pytest
 
 from parsim.errors import InputError
@@ -12,6 +13,7 @@ from parsim.report.measures import Published
 from parsim.validate import bars as held
 from parsim.validate import runs
 from parsim.validate.bars import Bar
+from parsim.validate.page import write
 from parsim.validate.record import note
 
 BAR = Bar("case/one", "quick", "height", "apex", 0.01, False, {})
@@ -95,3 +97,12 @@ def test_results_are_kept_and_brought_up_to_date(tmp_path):
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match="is no table of results"):
         note(tmp_path / "other.csv", [one])
+
+
+def test_the_page_shows_every_case_and_its_pictures(tmp_path):
+    fake_run.make(tmp_path / "case-one", times=(0.0, 0.4), spacing=0.03)
+    rows = [runs.judged(BAR, 1.02, number(1.0, model=1.1)), runs.judged(BAR, None, None) | {"case": "case/two"}]
+    text = write(tmp_path, rows).read_text()
+    assert "0 of 2 bars met" in text and text.count("MISSED") == 2 and "The run failed." in text
+    assert text.count("<img") >= 2 and 'href="case-one/report/index.html"' in text
+    assert (tmp_path / "case-one" / "report" / "index.html").is_file()

@@ -72,7 +72,7 @@ def eddy_viscosity(at, lists, kinematics, weight, length, n0, dimensions, out):
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
-    least = _EVEN * (n0 / dimensions) ** dimensions
+    least = _EVEN * (n0 / dimensions) * (n0 / dimensions) * (n0 / dimensions if dimensions == 3 else 1.0)
     for row in prange(at.size):
         i = at[row]
         xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

@@ -37,11 +37,12 @@ class Probes:
         self._places = np.array([[p.x, middle if p.y is None else p.y, p.z] for p in probes]).reshape(-1, 3)
         self._body = np.array([-1 if p.body is None else names.index(p.body) for p in probes], int)
         self._arms = np.zeros((len(probes), 3))
-        bodies = from_case(case) if (self._body >= 0).any() else None
-        for k in np.flatnonzero(self._body >= 0):
-            b = self._body[k]
-            turn = matrices(bodies.quaternion[b : b + 1])[0]
-            self._arms[k] = (self._places[k] - bodies.position[b]) @ turn
+        if (self._body >= 0).any():
+            bodies = from_case(case)  # at the start, whenever a run goes on
+            turn = matrices(bodies.quaternion)
+            for k in np.flatnonzero(self._body >= 0):
+                b = self._body[k]
+                self._arms[k] = (self._places[k] - bodies.position[b]) @ turn[b]
         self._head, self._unit = case.water.density * np.array(case.gravity), scales(case).pressure(case.dimensions)
 
     def rows(self, s: Simulation) -> list[list[Any]]:

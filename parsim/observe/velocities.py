@@ -45,9 +45,9 @@ class Velocities:
         count = len(self._lines) * self._count
         total = s.domain.sum(np.concatenate(values), self._units, np.concatenate(index), count)
         rows = []
-        for k in np.flatnonzero(total[:, 3] > 0.0):
-            line, row = divmod(int(k), self._count)
-            u, v, w, number = total[k]
-            z = self._low + (row + 0.5) * self._spacing
-            rows.append([self._lines[line].name, z, *map(float, (u / number, v / number, w / number)), int(number)])
+        for at_row in np.flatnonzero(total[:, 3] > 0.0).tolist():
+            number, level = divmod(at_row, self._count)
+            *sums, particles = total[at_row].tolist()
+            z = self._low + (level + 0.5) * self._spacing
+            rows.append([self._lines[number].name, z, *(value / particles for value in sums), int(particles)])
         return rows

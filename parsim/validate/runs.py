@@ -15,6 +15,7 @@ from parsim.output.reader import is_output
 from parsim.report.measures import Published, published
 from parsim.validate.bars import Bar, bars
 from parsim.validate.measures import MEASURES
+from parsim.validate.page import write
 from parsim.validate.record import note
 
 MISSED = 3
@@ -25,7 +26,8 @@ def validate(
 ) -> int:
     """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed.
 
-    Runs whose output is in `out` go on there, if they are of the same case and not done. `record`: a table of results,
+    Runs whose output is in `out` go on there, if they are of the same case and not done, and out/index.html shows all
+    that was run. `record`: a table of results,
     where the rows of what has been run take the place of those before.
     """
     held = bars(list(names), level)
@@ -33,6 +35,10 @@ def validate(
         rows = list(_rows(held, Path(out or scratch), ranks, as_json))
     if record:
         note(record, rows)
+    if out:
+        told = write(out, rows)
+        if not as_json:
+            print(f"page: {told}")
     if as_json:
         print(json.dumps(rows, indent=1))
     if any(row["value"] is None for row in rows):
