@@ -107,11 +107,11 @@ def pair(dice, law):
 
 
 def press(dice, law):
-    """Any body between two plates that close, soft ones to about its least width: (bodies, contacts, time it takes)."""
+    """Any body between two plates that close, on what is soft to less than its width: (bodies, contacts, time)."""
     planar, size = dice.random() < 0.3, 10.0 ** dice.uniform(-2.0, -1.0)
     body, flat = shape(dice, planar, size), 0.5 * size
     wide, thin = 2.0 * body.radius(planar), 2.0 * body.thinnest(planar)
-    start, end = 1.05 * wide, 1.02 * wide if law.INSTANT else dice.uniform(0.98, 1.05) * thin
+    start, end = 1.05 * wide, 1.02 * wide if law.INSTANT else max(dice.uniform(0.98, 1.05) * thin, wide - 0.4 * thin)
     takes, closed = 10.0 ** dice.uniform(0.5, 2.0) * size, 0.5 * (start - end)
     plate = BoxShape(size=(6.0 * size, 1.0 if planar else 6.0 * size, flat))
     masses = 900.0 * np.array([body.volume, plate.volume, plate.volume])

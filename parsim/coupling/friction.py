@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.fluid.friction import SLIP, Facets, Seen, mirror, rub, slip_of, spread
+from parsim.fluid.friction import SLIP, WEIGHT, Facets, Seen, mirror, rub, slip_of, spread
+from parsim.fluid.reference import Lattice
 from parsim.geometry.faces import SIDES, planes_of_walls, walled_sides
 from parsim.geometry.rotation import matrices
 from parsim.particles.state import BODY, GATE_DOWN, GATE_UP, WALL
@@ -21,8 +22,9 @@ class Rubbing(NamedTuple):
 class Friction:
     """The faces of all samples of a case that rub. `stress` (f, 3), N, of each face of this rank in this step."""
 
-    def __init__(self, case, bodies, samples, gate, lattice):
-        self.bodies, self._gate, self._lattice = bodies, gate, lattice
+    def __init__(self, case, bodies, samples, gate):
+        self.bodies, self._gate = bodies, gate
+        self._lattice = lattice = Lattice(case.dimensions, case.spacing, case.water.scheme.support, WEIGHT)
         table, self._spacing = case.water.friction, case.spacing
         self._by_law = table.kind == "wall_law"
         self._planes, named = planes_of_walls(case), [SIDES[a][s > 0] for a, s, _ in walled_sides(case)]

@@ -29,7 +29,7 @@ class Solids:
         self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [])
         self.friction = None
         if case.water.friction is not None:
-            self.friction = Friction(case, self.bodies, self.samples, self.gate, lattice)
+            self.friction = Friction(case, self.bodies, self.samples, self.gate)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._wet = case.water.scheme.WET
         self._load = np.zeros((len(self.bodies), 6))  # of the water in this step

@@ -17,6 +17,7 @@ from parsim.machine.jit import each, kernel, prange
 from parsim.particles.tables import Vectors
 
 SLIP = ("qx", "qy", "qz")
+WEIGHT = "wendland_c4"  # of all that shears, whatever the scheme's: it need not be compiled for each
 KAPPA = 0.41
 _POWER = 8.3  # of the law u = 8.3 u* (d u* / nu)^(1/7) (Werner & Wengle 1993)
 _FIRST, _THIN = 0.5, 1e-6  # spacings off a face, up to where water counts only if there is no other; how little it does

@@ -39,7 +39,7 @@ _PERIODIC: dict[str, Any] = {
     "bodies": [],
     "output": {"sensors": [{"name": "one", "x": 0.05}]},
 }
-_RUBBING: dict[str, Any] = {"eddies": {"kind": "mixing_length"}}
+RUBS = "wall_law", "no_slip"
 
 
 def prepare() -> None:
@@ -157,13 +157,10 @@ def exercise(part: str) -> None:
 
     if part == "solids":
         _touch(parse(_CASE))
-        cases = [
-            _CASE | {"water": _CASE["water"] | _RUBBING | {"friction": {"kind": kind}, "scheme": {"weight": name}}}
-            for name in WEIGHTS
-            for kind in ("wall_law", "no_slip")
-        ]
+        cases = [_CASE | {"water": _CASE["water"] | {"scheme": {"weight": name}}} for name in WEIGHTS]
     else:
-        cases = [_CASE, _CASE | _PERIODIC]
+        rubbing = [_CASE["water"] | {"friction": {"kind": kind}, "eddies": {"kind": "mixing_length"}} for kind in RUBS]
+        cases = [_CASE | {"water": rubbing[0]}, _CASE | _PERIODIC | {"water": rubbing[1]}]
     for data in cases:
         case = parse(data)
         simulation = Simulation(case, Comm())

@@ -48,9 +48,11 @@ class WCMPS:
         self.recovery = 2.0 * choice.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self.restitution = choice.restitution
         self.eddies = turbulence.length_of(case) if water.eddies else None
+        self._smooth = Lattice(case.dimensions, case.spacing, choice.support, friction.WEIGHT)
         no_slip = water.friction is not None and water.friction.kind == "no_slip"
         self._resolved = no_slip or water.eddies is not None  # viscosity is then no matter of the momentum sweep
-        self._rub = 2.0 * self.viscosity * self._gradient if no_slip else 0.0
+        self._mixing = 2.0 * case.dimensions / self._smooth.number
+        self._rub = self.viscosity * self._mixing if no_slip else 0.0
         self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
         self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
         self.close2 = (choice.collision_distance * case.spacing) ** 2
@@ -138,21 +140,19 @@ class WCMPS:
 
     def _shear(self, domain, near, rubbing):
         """Add the stress of walls, of eddies and of resolved viscous layers to the acceleration of the fluid."""
-        p, lattice, given = domain.particles, self.lattice, (near.fluid, near.lists, domain.particles.kinematics)
+        p, smooth, given = domain.particles, self._smooth, (near.fluid, near.lists, domain.particles.kinematics)
         if self.eddies:
             with self.timers("eddies"):
-                turbulence.eddy_viscosity(
-                    *given, lattice.weight, self.eddies, lattice.number, lattice.dimensions, p.eddy
-                )
+                turbulence.eddy_viscosity(*given, smooth.weight, self.eddies, smooth.number, smooth.dimensions, p.eddy)
         if self._resolved:
             with domain.refreshing("eddy", "surface"):
                 pass
             with self.timers("eddies"):
-                viscosities, viscous = (self.viscosity, p.eddy), (2.0 * self._gradient, lattice.dimensions)
-                turbulence.mix(*given, p.surface, lattice.weight, viscosities, viscous, p.acceleration)
+                viscosities, viscous = (self.viscosity, p.eddy), (self._mixing, smooth.dimensions)
+                turbulence.mix(*given, p.surface, smooth.weight, viscosities, viscous, p.acceleration)
         if rubbing:
             with self.timers("friction"):
-                friction.drag_water(*given, lattice.weight, rubbing, self._rub, p.acceleration)
+                friction.drag_water(*given, smooth.weight, rubbing, self._rub, p.acceleration)
 
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
@@ -170,7 +170,7 @@ class WCMPS:
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
         sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
         if rubbing:
-            given = at, near.lists, p.kinematics, self.lattice.weight
+            given = at, near.lists, p.kinematics, self._smooth.weight
             friction.drag_samples(*given, rubbing, self._rub, out.force)
         return self.mass * out.force, out.lever, self.mass * out.response
 
@@ -178,7 +178,7 @@ class WCMPS:
         """Force of friction, N, on the samples `at` as it was found last: (n, 3)."""
         out, p = np.zeros((at.size, 3)), flow.particles
         if rubbing := solids.rubbing(p):
-            given = at, flow.near.lists, p.kinematics, self.lattice.weight
+            given = at, flow.near.lists, p.kinematics, self._smooth.weight
             friction.drag_samples(*given, rubbing, self._rub, out)
         return self.mass * out
 
