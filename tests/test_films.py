@@ -33,6 +33,7 @@ def test_a_body_on_the_bed_is_lifted_like_any_other():
     assert abs(load[0]) < 0.1 * WEIGHT and abs(load[4]) < 0.1 * WEIGHT * 0.03
 
 
+@pytest.mark.long
 def test_a_body_at_a_wall_is_not_held_there():
     (load,) = mean_load([FIXED | {"position": [0.03, 0.5, 0.15]}])
     push = 9810.0 * 0.15 * 0.06  # of the water on its other side
@@ -53,6 +54,7 @@ def test_touching_bodies_are_not_pressed_together():
     assert left[2] + right[2] == pytest.approx(2 * WEIGHT, rel=SPREAD)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_touching_bodies_on_the_bed_are_lifted_too(count):
     loads = mean_load([FIXED | {"name": f"b{k}", "position": [0.14 + 0.06 * k, 0.5, 0.03]} for k in range(count)])
@@ -119,9 +121,9 @@ def test_water_inside_a_body_is_turned_out_through_the_nearest_face():
 
 
 @pytest.mark.parametrize("x", [0.01, 0.031, 0.37])
-def test_a_body_at_a_periodic_side_is_refused_by_name(x):
+def test_a_body_that_begins_at_a_periodic_side_is_refused_by_name(x):
     sides = {"max": POOL["box"]["max"], "faces": {"x_min": "periodic", "x_max": "periodic"}}
-    with pytest.raises(InputError, match="bodies.square: begins at a periodic side"):
+    with pytest.raises(InputError, match="bodies.square.position = .*: reaches the periodic side"):
         simulation(POOL | {"box": sides, "bodies": [SQUARE | {"position": [x, 0.5, 0.15]}]})
 
 

@@ -62,6 +62,7 @@ def test_what_a_body_gives_to_the_water_the_water_gives_to_it(kind):
     ({"friction": {"kind": "no_slip", "roughness": 0.001}}, "without slip walls are smooth"),
     ({"friction": {"kind": "wall_law", "walls": ["z_max"]}}, 'water.friction.walls = "z_max": is no wall; allowed'),
     ({"friction": {"kind": "wal_law"}}, "water.friction.kind = 'wal_law': must be 'wall_law' or 'no_slip'"),
+    ({"friction": {"kind": "no_slip"}, "viscosity": 0.0}, "water.viscosity = 0.0: must be more than 0"),
     ({"eddies": {"kind": "smagorinsky", "constant": 0.0}}, "water.eddies.constant"),
 ])  # fmt: skip
 def test_what_can_not_be_is_refused(water, text):
@@ -69,6 +70,12 @@ def test_what_can_not_be_is_refused(water, text):
     with pytest.raises(InputError) as error:
         parse(given | {"water": given["water"] | water})
     assert text in str(error.value)
+
+
+def test_a_mixing_length_wants_a_wall():
+    given = tank(0.2, 0.2, 0.01, periodic="xz", eddies={"kind": "mixing_length"})
+    with pytest.raises(InputError, match="there is no wall to be at a distance from"):
+        parse(given)
 
 
 def test_roughness_of_a_material_wants_friction_and_too_much_is_doubted():

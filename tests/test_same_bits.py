@@ -65,8 +65,10 @@ def test_the_case_does_what_the_comparison_needs(one_rank, name):
     assert max(counts["lost"]) == max(counts["in_bodies"]) == 0
 
 
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("name", "way"), [
+    *(("3d", way) for way in WAYS), ("2d", "two ranks"), ("2d", "three ranks"),
+    *(pytest.param("2d", way, marks=pytest.mark.long) for way in ("two ranks, cuts that stay", "two threads")),
+])  # fmt: skip
 def test_same_bits(one_rank, name, way, mpirun, tmp_path, capsys):
     ranks, options = WAYS[way]
     done = mpirun(ranks, ["run", CASES[name], "-o", tmp_path / "other", *options], timeout=240)

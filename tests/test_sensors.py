@@ -15,6 +15,7 @@ from parsim.observe.probes import Probes
 from parsim.observe.velocities import Velocities
 
 DEPTH = 0.1
+PROBE = {"kind": "pressure", "name": "a", "z": 0.05}
 FLOAT = {"name": "raft", "shape": {"size": [0.08, 1.0, 0.04]}, "density": 500.0, "material": "wood",
          "position": [0.2, 0.5, "float"]}  # fmt: skip
 
@@ -61,7 +62,7 @@ def test_walls_carry_the_water():
     sensors = [
         {"kind": "force", "name": "floor", "wall": "z_min"},
         {"kind": "force", "name": "side", "wall": "x_max"},
-        {"kind": "force", "name": "half", "wall": "z_min", "min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, 1.0]},
+        {"kind": "force", "name": "half", "wall": "z_min", "min": [0.0, 0.0, 0.0], "max": [0.2, 0.0, 0.0]},
     ]
     s = still(*sensors)
     rows = {(name, kind): force for name, kind, *force in Forces(s.case).rows(s)}
@@ -75,8 +76,8 @@ def test_walls_carry_the_water():
 def test_a_stream_is_seen_as_it_flows():
     """A plug of 0.5 m/s between periodic sides: discharge, momentum, its profile, and the friction of the bed."""
     sensors = [
-        {"kind": "flux", "name": "through", "x": 0.2},
-        {"kind": "velocity", "name": "line", "x": 0.2, "width": 0.1},
+        {"kind": "flux", "name": "through", "x": 0.0},
+        {"kind": "velocity", "name": "line", "x": 0.0, "width": 0.1},
         {"kind": "force", "name": "bed", "wall": "z_min"},
     ]
     given = tank(0.4, 0.2, 0.01, fill=(0.4, DEPTH), periodic="x", friction={"kind": "wall_law", "roughness": 0.005})
@@ -96,6 +97,35 @@ def test_a_stream_is_seen_as_it_flows():
     assert bed[0] == pytest.approx(s.solids.friction.stress[:, 0].sum(), rel=1e-4) and bed[0] > 0.1
 
 
+def test_nothing_is_told_of_pressures_before_the_first_step():
+    sensors = [
+        {"kind": "force", "name": "floor", "wall": "z_min"},
+        {"kind": "pressure", "name": "a", "x": 0.1, "z": 0.0},
+    ]
+    s = simulation(tank(0.4, 0.2, 0.01, fill=(0.4, DEPTH)), output={"sensors": sensors})
+    rows = [*Forces(s.case).rows(s), *Probes(s.case).rows(s)]
+    assert np.isnan([row[-1] for row in rows]).all()
+
+
+def test_a_flux_near_an_open_side_counts_the_water_that_is_there():
+    given = tank(0.4, 0.2, 0.01, fill=(0.4, DEPTH))
+    given["water"]["fill"][0]["velocity"] = [0.5, 0.0, 0.0]
+    s = simulation(
+        given, output={"sensors": [{"kind": "flux", "name": n, "x": x} for n, x in (("a", 0.0), ("b", 0.39))]}
+    )
+    for _, _, discharge, area, *_ in Fluxes(s.case).rows(s):
+        assert area == pytest.approx(DEPTH, rel=0.05) and discharge == pytest.approx(0.5 * area, rel=1e-6)
+
+
+@pytest.mark.parametrize("x", [0.0, 0.1, 0.4])
+def test_a_probe_looks_across_a_periodic_side(x):
+    given = tank(0.4, 0.2, 0.01, fill=(0.4, DEPTH), periodic="x")
+    s = simulation(given, gravity=[0.5, 0.0, -GRAVITY], output={"sensors": [PROBE | {"x": x}]})
+    for _ in range(3):
+        s.step()
+    assert Probes(s.case).rows(s)[0][-1] == pytest.approx(1000.0 * GRAVITY * 0.05, rel=0.01)
+
+
 def test_friction_is_part_of_what_the_water_does_to_a_body():
     given = tank(0.4, 0.2, 0.01, fill=(0.4, DEPTH), friction={"kind": "wall_law", "roughness": 0.002})
     s = simulation(given, materials=WOOD, bodies=[FLOAT | {"velocity": [0.3, 0.0, 0.0]}])
@@ -110,6 +140,7 @@ def test_friction_is_part_of_what_the_water_does_to_a_body():
     ({"kind": "pressure", "x": 0.1, "z": 0.1, "body": "rafd"}, 'body = "rafd": no such body; allowed: raft'),
     ({"kind": "force", "wall": "z_max"}, 'output.sensors.a.wall = "z_max": is no wall of this case'),
     ({"kind": "flux", "x": 1.0}, "output.sensors.a.x = 1.0: outside the box"),
+    ({"kind": "force", "wall": "z_min", "min": [0.3, 0.0, 0.0], "max": [0.1, 1.0, 1.0]}, "there is nothing of the"),
     ({"kind": "flow", "x": 1.0}, "output.sensors.a.kind = 'flow': must be"),
 ])  # fmt: skip
 def test_sensors_that_can_not_be_are_refused(sensor, text):

@@ -98,6 +98,13 @@ def _outside(case, body):
     low, high, around = place.low(), place.high(), repeats(case)
     for axis in case.axes:
         name, least, most = "xyz"[axis], case.box.min[axis], case.box.max[axis]
+        near = 0.5 * case.spacing if case.water.scheme.WET else 0.0
+        if around[axis] and near and (low[axis] < least + near - TOUCH or high[axis] > most - near + TOUCH):
+            yield (
+                f"position = {list(body.position)}: reaches the periodic side; it may cross it later, but must begin "
+                f"half a spacing off it: it reaches from {name} = {low[axis]:.6g} to {high[axis]:.6g}"
+            )
+            continue
         if around[axis]:
             low[axis] = high[axis] = body.position[axis]
         if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
@@ -211,10 +218,23 @@ def sensors(case):
         wall, body = getattr(sensor, "wall", None), getattr(sensor, "body", None)
         if wall is not None and not (getattr(case.box.faces, wall).holds_water and "xyz".index(wall[0]) in case.axes):
             out.append(f'{key}.wall = "{wall}": is no wall of this case')
+        elif wall is not None:
+            out += [f"{key}.{fault}" for fault in _patch(case, sensor)]
         if body is not None and body not in names:
             hint = suggestion(nearest(body, names))
             out.append(f'{key}.body = "{body}": no such body; allowed: {", ".join(names[:9]) or "none"}{hint}')
     return out
+
+
+def _patch(case, sensor):
+    """What is wrong with the corners of a part of a wall, along the axes in which walls reach."""
+    for axis in case.axes:
+        low, high = (getattr(sensor, end) and getattr(sensor, end)[axis] for end in ("min", "max"))
+        if axis == "xyz".index(sensor.wall[0]):
+            continue
+        low, high = case.box.min[axis] if low is None else low, case.box.max[axis] if high is None else high
+        if not max(low, case.box.min[axis]) < min(high, case.box.max[axis]):
+            yield f"min, max: from {'xyz'[axis]} = {low!r} to {high!r} there is nothing of the wall"
 
 
 def narrow_passages(case):

@@ -77,7 +77,8 @@ def _completed(case):
             faults.append(f'bodies.{body.name}.position = "float" as z: {error}')
     middle = (case.box.min[1] + case.box.max[1]) / 2
     sensors = tuple(
-        s.model_copy(update={"y": middle}) if getattr(s, "y", 0.0) is None else s for s in case.output.sensors
+        s.model_copy(update={"y": middle}) if hasattr(s, "y") and (s.y is None or case.dimensions == 2) else s
+        for s in case.output.sensors
     )
     update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"sensors": sensors})}
     if case.gate and case.gate.bottom is None:

@@ -17,7 +17,7 @@ class Material(Table):
     restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
     rolling: Share = Field(0.0, description="coefficient of rolling friction, of what is round")
     roughness: NotNegative | None = Field(
-        None, description="equivalent sand roughness ks that water feels, m; left out: water.friction.roughness"
+        None, description="equivalent sand roughness ks of bodies of it in water, m; left out: water.friction.roughness"
     )
 
 

@@ -18,7 +18,7 @@ class Friction(Table):
         "layers are resolved"
     )
     roughness: NotNegative = Field(
-        0.0, description="equivalent sand roughness ks of what has no material of its own, m; 0 is smooth"
+        0.0, description="equivalent sand roughness ks of walls and gate, and of bodies whose material has none, m"
     )
     walls: tuple[FaceName, ...] | None = Field(None, description="sides that rub; left out: all that are walls")
     bodies: Switch = Field(True, description="whether bodies rub")
@@ -36,19 +36,22 @@ class Eddies(Table):
 
 def faults(case):
     """What is wrong with the friction of a completed case: messages."""
-    friction, own = case.water.friction, [n for n, m in case.materials.items() if m.roughness is not None]
+    out, friction, own = [], case.water.friction, [n for n, m in case.materials.items() if m.roughness is not None]
     if not case.water.scheme.WET:
         given = [f"water.{name}" for name in ("friction", "eddies") if getattr(case.water, name) is not None]
         return [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
+    walls = [n for n in FaceName.__args__ if n[0] in "xz" or case.dimensions == 3]
+    walls = [name for name in walls if getattr(case.box.faces, name).holds_water]
+    if case.water.eddies is not None and case.water.eddies.kind == "mixing_length" and not walls:
+        out.append('water.eddies.kind = "mixing_length": there is no wall to be at a distance from; use "smagorinsky"')
     if friction is None:
-        return [f"materials.{name}.roughness: nothing rubs the water; water.friction is missing" for name in own]
-    out = []
+        return out + [f"materials.{name}.roughness: nothing rubs the water; water.friction is missing" for name in own]
     if friction.kind == "no_slip":
+        if case.water.viscosity == 0.0:
+            out.append('water.viscosity = 0.0: must be more than 0 with water.friction.kind = "no_slip"')
         given = [("water.friction.roughness", friction.roughness)] if friction.roughness else []
         given += [(f"materials.{name}.roughness", case.materials[name].roughness) for name in own]
         out += [f'{key} = {value!r}: is for kind = "wall_law"; without slip walls are smooth' for key, value in given]
-    walls = [n for n in FaceName.__args__ if n[0] in "xz" or case.dimensions == 3]
-    walls = [name for name in walls if getattr(case.box.faces, name).holds_water]
     wrong = [name for name in friction.walls or () if name not in walls]
     allowed = ", ".join(walls) or "none"
     return out + [f'water.friction.walls = "{name}": is no wall; allowed: {allowed}' for name in wrong]

@@ -69,10 +69,11 @@ class Films:
     def __init__(self, case, bodies, samples, lattice):
         self.bodies, self.samples = bodies, samples
         self._spacing, self._weight = case.spacing, lattice.weight
-        self._head = case.water.density * np.array(case.gravity)
         self._layer, self._deep = _layers(lattice)
         self._planes = planes_of_walls(case)
         self._period = period(case)
+        # water that goes round has no head along its way
+        self._head = np.where(np.isinf(self._period), case.water.density * np.array(case.gravity), 0.0)
         each = samples.of_body
         first = np.cumsum([0, *(len(s.offsets) for s in each)])
         self.sample = np.concatenate(

@@ -34,7 +34,7 @@ class Friction:
         viscosity, density = case.water.viscosity, case.water.density
         self._seen = Seen(case.spacing, half, lattice.volume, viscosity, density)
         rough = [table.roughness if m.roughness is None else m.roughness for m in case.materials.values()]
-        self._of_walls = rough[list(case.materials).index(case.wall_material)] if rough else table.roughness
+        self._of_walls = table.roughness
         self._of_bodies = np.array(rough or [0.0])[bodies.material]
         self._patches = _patches(samples)
         self.stress = np.zeros((0, 3))

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.coupling.response import added_inertia, arms_of, levers, respond
-from parsim.errors import InputError
 from parsim.geometry.faces import period
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
@@ -42,8 +41,7 @@ class BodySamples:
     def __init__(self, case, bodies, layers, units):
         self.bodies, self._gravity = bodies, np.array(case.gravity, float)
         self._way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
-        self._units, self._start, self._spacing = units, case.start, case.spacing
-        self._low, self._period = np.array(case.box.min), period(case)
+        self._units, self._low, self._period = units, np.array(case.box.min), period(case)
         sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
         self.of_body = [sampled(shape) for shape in bodies.shapes]
         self.offsets = np.concatenate([np.zeros((0, 3)), *(s.offsets for s in self.of_body)])
@@ -54,9 +52,7 @@ class BodySamples:
         return len(self.offsets)
 
     def samples(self, slab, time):
-        """Body samples of the slab that may see water; InputError for a body that begins at a periodic side."""
-        if time <= self._start:
-            self._keep_off()
+        """Body samples of the slab that may see water."""
         b = self.bodies
         reached = slab.reached(b.position[:, 0], b.radius) if np.isinf(self._period[0]) else np.ones(len(b), bool)
         at, place = self._located(reached & ~b.gone)
@@ -82,17 +78,6 @@ class BodySamples:
         place = Vectors(*np.empty((3, at.size)))
         locate(self.offsets[at], self.body[at], self.bodies.position, matrices(self.bodies.quaternion), place)
         return at, place
-
-    def _keep_off(self):
-        """Refuse a body that begins at a periodic side: the water that it takes the place of is cut out on one side."""
-        at, place = self._located(~self.bodies.gone)
-        beside = np.zeros(at.size, bool)
-        for axis in np.flatnonzero(np.isfinite(self._period)):
-            above = place[axis] - self._low[axis]
-            beside |= (above < self._spacing) | (above > self._period[axis] - self._spacing)
-        if beside.any():
-            name = self.bodies.names[self.body[at[beside.argmax()]]]
-            raise InputError(f"bodies.{name}: begins at a periodic side; it may cross it later, but must begin off it")
 
     def note_shifts(self, p):
         """Note, after a rebuild, from which periodic image of its body each sample among the particles `p` is."""

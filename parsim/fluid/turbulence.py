@@ -21,12 +21,13 @@ _FILTER = 2.0  # width of the filter, in spacings
 
 class Length(NamedTuple):
     """What the length of eddies depends on: walls besides the floor (w, 4), normal and level; floor (0 or 1, 4), the
-    same; depth, m; longest, m."""
+    same; depth, m; longest, m; most, m2/s, that any viscosity is."""
 
     walls: np.ndarray
     floor: np.ndarray
     depth: float
     longest: float
+    most: float = math.inf
 
 
 def length_of(case):
@@ -40,7 +41,7 @@ def length_of(case):
 @kernel
 def _mixing_length(length, x, y, z):
     """kappa d, m, at most the longest; over the floor kappa d sqrt(1 - d / H), which makes the profile logarithmic."""
-    walls, floor, depth, most = length
+    walls, floor, depth, most, _ = length
     for k in range(len(walls)):
         most = min(most, KAPPA * (walls[k, 0] * x + walls[k, 1] * y + walls[k, 2] * z - walls[k, 3]))
     for k in range(len(floor)):
@@ -93,7 +94,7 @@ def eddy_viscosity(at, lists, kinematics, weight, length, n0, dimensions, out):
             yy = 1.0
         strain = _strain((xx, xy, xz, yy, yz, zz), (ux, uy, uz), (vx, vy, vz), (wx, wy, wz), least)
         size = _mixing_length(length, x[i], y[i], z[i])
-        out[i] = size * size * strain
+        out[i] = min(size * size * strain, length.most)
 
 
 @kernel

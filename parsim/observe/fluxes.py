@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import scales
+from parsim.geometry.faces import period
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Section
 
@@ -24,6 +25,8 @@ class Fluxes:
     def __init__(self, case: Case) -> None:
         self._sections = [sensor for sensor in case.output.sensors if isinstance(sensor, Section)]
         self._width, self._density, scale = Section.WIDTH * case.spacing, case.water.density, scales(case)
+        self._period = float(period(case)[0])
+        self._inside = [self._share(case, section.x) for section in self._sections]
         volume, speed = scale.mass / case.water.density, scale.length / scale.time
         self._units = np.array([volume, volume * speed, volume * speed * speed]) / scale.length
 
@@ -33,15 +36,26 @@ class Fluxes:
             return []
         p, at, values, index = s.domain.particles, s.near.fluid, [np.zeros((0, 3))], [np.zeros(0, np.int64)]
         for k, section in enumerate(self._sections):
-            here = at[np.abs(p.x[at] - section.x) < self._width]
+            away = np.abs(self._apart(p.x[at] - section.x))
+            here, away = at[away < self._width], away[away < self._width]
             share = s.scheme.lattice.volume / s.scheme.compression(p, here) / self._width
-            share *= 1.0 - np.abs(p.x[here] - section.x) / self._width
+            share *= (1.0 - away / self._width) / self._inside[k]
             u = p.u[here]
             values.append(np.stack([share, share * u, share * u * u], axis=1))
             index.append(np.full(here.size, k))
         total = s.domain.sum(np.concatenate(values), self._units, np.concatenate(index), len(self._sections))
-        rows = []
+        rows: list[list[Any]] = []
         for section, (area, discharge, momentum) in zip(self._sections, total.tolist(), strict=True):
             speed = discharge / area if area > 0.0 else 0.0
             rows.append([section.name, float(section.x), discharge, area, speed, self._density * momentum])
         return rows
+
+    def _apart(self, dx):
+        return dx - self._period * np.rint(dx / self._period) if np.isfinite(self._period) else dx
+
+    def _share(self, case, x):
+        """The part of the hat that is in the box."""
+        if np.isfinite(self._period):
+            return 1.0
+        cut = (max(1.0 - abs(side - x) / self._width, 0.0) for side in (case.box.min[0], case.box.max[0]))
+        return 1.0 - sum(0.5 * each * each for each in cut)

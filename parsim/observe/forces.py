@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.run.simulation import Simulation
 
+KINDS = "pressure", "friction"
+
 
 class Forces:
     """Two rows for each patch: pressure, by the samples of the first layer behind the wall, and friction."""
@@ -28,6 +30,7 @@ class Forces:
         named = [SIDES[axis][side > 0] for axis, side, _ in walled_sides(case)]
         self._planes = dict(zip(named, planes_of_walls(case), strict=True))
         self._unit, self._spacing = scales(case).force, case.spacing
+        self._used = np.isin(range(3), case.axes)
         self._head = case.water.density * np.array(case.gravity)
         self._area = case.spacing ** (case.dimensions - 1)
 
@@ -35,6 +38,8 @@ class Forces:
         """See `Observer`."""
         if not self._patches:
             return []
+        if s.step_count == 0:  # there are no pressures yet
+            return [[patch.name, kind, *[np.nan] * 3] for patch in self._patches for kind in KINDS]
         p = s.domain.particles
         at = s.near.boundary[p.kind[s.near.boundary] == WALL]
         place = np.stack([p.x[at], p.y[at], p.z[at]], axis=1)
@@ -51,14 +56,14 @@ class Forces:
         return [
             [patch.name, kind, *map(float, total[2 * k + row])]
             for k, patch in enumerate(self._patches)
-            for row, kind in enumerate(("pressure", "friction"))
+            for row, kind in enumerate(KINDS)
         ]
 
     def _behind(self, place, patch):
         """How far places (n, 3) lie behind the wall of a patch, m, and whether they are right behind it."""
         plane = self._planes[patch.wall]
         behind = plane[3] - place @ plane[:3]
-        along = np.abs(plane[:3]) == 0.0
+        along = (np.abs(plane[:3]) == 0.0) & self._used
         low = np.full(3, -np.inf) if patch.min is None else np.array(patch.min)
         high = np.full(3, np.inf) if patch.max is None else np.array(patch.max)
         within = ((place >= low) & (place < high) | ~along).all(axis=1)

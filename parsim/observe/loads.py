@@ -43,4 +43,6 @@ class Loads:
         each = np.empty((at.size, 6))
         arms = s.solids.samples.arms(p, at, s.bodies.position)
         levers(arms, s.scheme.rubbed(s.flow(), s.solids, at), each)
-        return s.domain.sum(each, self._units, p.body[at].astype(np.int64), len(s.bodies))
+        total = s.domain.sum(each, self._units, p.body[at].astype(np.int64), len(s.bodies))
+        total[s.bodies.gone] = np.nan
+        return total

@@ -9,6 +9,7 @@ import numpy as np
 
 from parsim.case.scales import scales
 from parsim.fluid.weights.choice import weight_at
+from parsim.geometry.faces import period
 from parsim.geometry.rotation import matrices
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
@@ -43,7 +44,9 @@ class Probes:
             for k in np.flatnonzero(self._body >= 0):
                 b = self._body[k]
                 self._arms[k] = (self._places[k] - bodies.position[b]) @ turn[b]
-        self._head, self._unit = case.water.density * np.array(case.gravity), scales(case).pressure(case.dimensions)
+        self._period, self._unit = period(case), scales(case).pressure(case.dimensions)
+        # nothing rises along an axis that repeats
+        self._head = np.where(np.isinf(self._period), case.water.density * np.array(case.gravity), 0.0)
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
@@ -53,11 +56,12 @@ class Probes:
         turn = matrices(s.bodies.quaternion)
         for k in np.flatnonzero(self._body >= 0):
             places[k] = s.bodies.position[self._body[k]] + turn[self._body[k]] @ self._arms[k]
+        if s.step_count == 0:  # there are no pressures yet
+            return [[name, *map(float, place), np.nan] for name, place in zip(self._names, places, strict=True)]
         found = np.empty((len(places) * 64, 3))
+        seen = lattice.weight, lattice.radius, self._period
         while True:
-            count = pressures(
-                s.near.fluid, p.place, (p.p, p.surface), places, (lattice.weight, lattice.radius), self._head, found
-            )
+            count = pressures(s.near.fluid, p.place, (p.p, p.surface), places, seen, self._head, found)
             if count <= len(found):
                 break
             found = np.empty((2 * count, 3))
@@ -65,6 +69,8 @@ class Probes:
         total = s.domain.sum(values, units, row, len(places))
         wet = total[:, 1] > _DRY * lattice.whole
         pressure = np.where(wet, total[:, 0] / np.where(wet, total[:, 1], 1.0), 0.0)
+        gone = (self._body >= 0) & s.bodies.gone[self._body] if len(s.bodies) else np.zeros(len(places), bool)
+        pressure[gone], places[gone] = np.nan, np.nan
         return [
             [name, *map(float, place), float(value)]
             for name, place, value in zip(self._names, places, pressure, strict=True)
@@ -72,17 +78,24 @@ class Probes:
 
 
 @kernel
+def nearest(d, period):
+    """The distance d, m, along an axis to the nearest image."""
+    return d - period * np.rint(d / period) if period < np.inf else d
+
+
+@kernel
 def pressures(at, place, water, probes, seen, head, out):
     """Rows of probe, m p and m of the water `at` around each probe (k, 3): their number; out (n, 3).
 
-    `water`: p, Pa, surface; `seen`: weight and its radius; `head` (3,): rise of the pressure of water at rest, Pa/m.
-    Rows beyond `out` are counted only.
+    `water`: p, Pa, surface; `seen`: weight, its radius, period (3,), m; `head` (3,): rise of the pressure of water at
+    rest, Pa/m. Rows beyond `out` are counted only.
     """
-    (x, y, z), (p, surface), (weight, radius) = place, water, seen
+    (x, y, z), (p, surface), (weight, radius, period) = place, water, seen
     count = 0
     for k in range(len(probes)):
         for i in at:
-            dx, dy, dz = probes[k, 0] - x[i], probes[k, 1] - y[i], probes[k, 2] - z[i]
+            dx, dy = nearest(probes[k, 0] - x[i], period[0]), nearest(probes[k, 1] - y[i], period[1])
+            dz = nearest(probes[k, 2] - z[i], period[2])
             r2 = max(dx * dx + dy * dy + dz * dz, 1e-12 * radius * radius)
             if surface[i] == DETACHED or r2 >= radius * radius:
                 continue

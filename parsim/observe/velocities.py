@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import scales
+from parsim.geometry.faces import period
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Line
 
@@ -26,7 +27,7 @@ class Velocities:
         self._middle = 0.5 * (case.box.min[1] + case.box.max[1])
         self._low, self._spacing, self._flat = case.box.min[2], case.spacing, case.dimensions == 2
         self._count = max(int(np.ceil((case.box.max[2] - case.box.min[2]) / case.spacing)), 1)
-        scale = scales(case)
+        scale, self._period = scales(case), period(case)
         self._units = np.array([*(scale.length / scale.time,) * 3, 1.0])
 
     def rows(self, s: Simulation) -> list[list[Any]]:
@@ -35,11 +36,12 @@ class Velocities:
             return []
         p, at, values, index = s.domain.particles, s.near.fluid, [np.zeros((0, 4))], [np.zeros(0, np.int64)]
         for k, line in enumerate(self._lines):
-            near = np.abs(p.x[at] - line.x) < 0.5 * line.width
+            y = self._middle if line.y is None else line.y
+            level = np.floor((p.z[at] - self._low) / self._spacing).astype(np.int64)
+            near = (self._away(p.x[at] - line.x, 0) < 0.5 * line.width) & (level >= 0) & (level < self._count)
             if not self._flat:
-                near &= np.abs(p.y[at] - (self._middle if line.y is None else line.y)) < 0.5 * line.width
-            here = at[near]
-            row = np.clip(((p.z[here] - self._low) / self._spacing).astype(np.int64), 0, self._count - 1)
+                near &= self._away(p.y[at] - y, 1) < 0.5 * line.width
+            here, row = at[near], level[near]
             values.append(np.stack([p.u[here], p.v[here], p.w[here], np.ones(here.size)], axis=1))
             index.append(row + k * self._count)
         count = len(self._lines) * self._count
@@ -51,3 +53,8 @@ class Velocities:
             z = self._low + (level + 0.5) * self._spacing
             rows.append([self._lines[number].name, z, *(value / particles for value in sums), int(particles)])
         return rows
+
+    def _away(self, d, axis):
+        """Distances to the nearest image along an axis, m."""
+        again = self._period[axis]
+        return np.abs(d - again * np.rint(d / again) if np.isfinite(again) else d)

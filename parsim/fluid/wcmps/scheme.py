@@ -103,7 +103,7 @@ class WCMPS:
             if solids.driven(time + 0.5 * dt):
                 solids.drive(flow, self._react(p, near, near.gate, dt, rubbing), time + 0.5 * dt, dt)
         self._accelerate(domain, near, dt)
-        self._shear(domain, near, rubbing)
+        self._shear(domain, near, rubbing, dt)
         with self.timers("move"):
             updates.kick(near.fluid, self.gravity, flow.keep, dt, p.acceleration, p.velocity)
         solids.advance(flow, time, dt)
@@ -138,12 +138,16 @@ class WCMPS:
             bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
             surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
 
-    def _shear(self, domain, near, rubbing):
-        """Add the stress of walls, of eddies and of resolved viscous layers to the acceleration of the fluid."""
+    def _shear(self, domain, near, rubbing, dt):
+        """Add the stress of walls, of eddies and of resolved viscous layers to the acceleration of the fluid.
+
+        Eddies take no more in a step than half of what changes from particle to particle.
+        """
         p, smooth, given = domain.particles, self._smooth, (near.fluid, near.lists, domain.particles.kinematics)
         if self.eddies:
+            eddies = self.eddies._replace(most=0.25 / (dt * self._mixing * smooth.slopes))
             with self.timers("eddies"):
-                turbulence.eddy_viscosity(*given, smooth.weight, self.eddies, smooth.number, smooth.dimensions, p.eddy)
+                turbulence.eddy_viscosity(*given, smooth.weight, eddies, smooth.number, smooth.dimensions, p.eddy)
         if self._resolved:
             with domain.refreshing("eddy", "surface"):
                 pass
