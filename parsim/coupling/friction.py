@@ -32,7 +32,7 @@ class Friction:
         self._bodies_rub, self._mass = table.bodies, case.water.density * lattice.volume
         half = sum(w for w, _, _, up in lattice.points() if up > 0.5 * case.spacing)
         viscosity, density = case.water.viscosity, case.water.density
-        self._seen = Seen(case.spacing, half, lattice.volume, viscosity, density)
+        self._seen = Seen(case.spacing, half, viscosity, density)
         rough = [table.roughness if m.roughness is None else m.roughness for m in case.materials.values()]
         self._of_walls = table.roughness
         self._of_bodies = np.array(rough or [0.0])[bodies.material]

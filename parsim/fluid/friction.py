@@ -36,12 +36,10 @@ class Facets(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """How faces see water: spacing, m; the sum of W of half a lattice; volume of a particle, m^d; viscosity, m2/s;
-    density, kg/m3."""
+    """How faces see water: spacing, m; the sum of W of half a lattice; viscosity, m2/s; density, kg/m3."""
 
     spacing: float
     half: float
-    volume: float
     viscosity: float
     density: float
 
@@ -85,7 +83,7 @@ def rub(facets, lists, kinematics, weight, seen, stress):
     distance and its logarithm. What sees less water than half a lattice is wet for that share.
     """
     at, under, normal, area, roughness = facets
-    spacing, half, _, viscosity, density = seen
+    spacing, half, viscosity, density = seen
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity

@@ -54,3 +54,8 @@ def period(case):
     """Lengths (3,), m, after which the box repeats; inf where it does not."""
     low, high = case.box.min, case.box.max
     return np.array([high[a] - low[a] if again else math.inf for a, again in enumerate(repeats(case))])
+
+
+def to_nearest_image(d, period):
+    """Distances d (n,), m, along an axis to the nearest image, where things repeat after `period`, m, or never, inf."""
+    return d - period * np.rint(d / period) if math.isfinite(period) else d

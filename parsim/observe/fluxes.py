@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import scales
-from parsim.geometry.faces import period
+from parsim.geometry.faces import period, to_nearest_image
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Section
 
@@ -36,7 +36,7 @@ class Fluxes:
             return []
         p, at, values, index = s.domain.particles, s.near.fluid, [np.zeros((0, 3))], [np.zeros(0, np.int64)]
         for k, section in enumerate(self._sections):
-            away = np.abs(self._apart(p.x[at] - section.x))
+            away = np.abs(to_nearest_image(p.x[at] - section.x, self._period))
             here, away = at[away < self._width], away[away < self._width]
             share = s.scheme.lattice.volume / s.scheme.compression(p, here) / self._width
             share *= (1.0 - away / self._width) / self._inside[k]
@@ -49,9 +49,6 @@ class Fluxes:
             speed = discharge / area if area > 0.0 else 0.0
             rows.append([section.name, float(section.x), discharge, area, speed, self._density * momentum])
         return rows
-
-    def _apart(self, dx):
-        return dx - self._period * np.rint(dx / self._period) if np.isfinite(self._period) else dx
 
     def _share(self, case, x):
         """The part of the hat that is in the box."""

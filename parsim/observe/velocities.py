@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import scales
-from parsim.geometry.faces import period
+from parsim.geometry.faces import period, to_nearest_image
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Line
 
@@ -55,6 +55,4 @@ class Velocities:
         return rows
 
     def _away(self, d, axis):
-        """Distances to the nearest image along an axis, m."""
-        again = self._period[axis]
-        return np.abs(d - again * np.rint(d / again) if np.isfinite(again) else d)
+        return np.abs(to_nearest_image(d, float(self._period[axis])))
