@@ -20,7 +20,10 @@ class Rubbing(NamedTuple):
 
 
 class Friction:
-    """The faces of all samples of a case that rub. `stress` (f, 3), N, of each face of this rank in this step."""
+    """The faces of all samples of a case that rub.
+
+    `stress` (f, 4): force, N, on each face of this rank in this step, and the sum of W of the water it sees.
+    """
 
     def __init__(self, case, bodies, samples, gate):
         self.bodies, self._gate = bodies, gate
@@ -37,16 +40,20 @@ class Friction:
         self._of_walls = table.roughness
         self._of_bodies = np.array(rough or [0.0])[bodies.material]
         self._patches = _patches(samples)
-        self.stress = np.zeros((0, 3))
+        self.stress = np.zeros((0, 4))
 
     def find(self, p, near):
         """Note, after a rebuild, the faces of this rank's samples, and which of all particles rub."""
-        self.share = np.where(self._rubbing(p), 1.0 if self._by_law else p.scale, 0.0)
-        if self._by_law:
+        if not self._by_law:
+            self.share = np.where(self._rubbing(p), p.scale, 0.0)
+        else:
+            self.share = np.zeros(len(p))  # of what has no face nothing is felt, in the halo as here
+            for facets in (self._fixed(p, np.arange(len(p))), self._own(p, np.flatnonzero(p.kind == BODY))):
+                self.share[facets.at] = 1.0
             fixed, own = self._fixed(p, near.boundary), self._own(p, near.body)
             self._turned = len(fixed.at), own.normal, p.body[own.at]
             self._facets = Facets(*map(np.concatenate, zip(fixed, own, strict=True)))
-            self.stress = np.zeros((len(self._facets.at), 3))
+            self.stress = np.zeros((len(self._facets.at), 4))
 
     def find_slip(self, flow):
         """Set the slip of this rank's samples, and refresh it in the halos."""
@@ -54,7 +61,7 @@ class Friction:
         if self._by_law:
             self._turn()
             rub(self._facets, lists, p.kinematics, weight, self._seen, self.stress)
-            spread(self._facets, lists, p.place, weight, self._mass, self.stress, slip_of(p))
+            spread(self._facets, self._mass, self.stress, slip_of(p))
         else:
             mirror(flow.near.boundary, lists, p.kinematics, weight, slip_of(p))
         with flow.domain.refreshing(*SLIP):

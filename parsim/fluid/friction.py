@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
-from parsim.machine.jit import each, kernel, prange
+from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.tables import Vectors
 
 SLIP = ("qx", "qy", "qz")
@@ -75,24 +75,26 @@ def stress_over_density(speed, distance, log, roughness, viscosity):
     return max(smooth, rough * rough)
 
 
-@kernel
+@rows
 def rub(facets, lists, kinematics, weight, seen, stress):
-    """Stress times area, N, of each face on its wall or body: `stress` (f, 3).
+    """Stress times area, N, of each face on its wall or body, and the sum of W of the water it sees: `stress` (f, 4).
 
-    The velocity is that of the water from half a spacing off the face on, by W and by how far beyond, and so are the
-    distance and its logarithm. What sees less water than half a lattice is wet for that share.
+    The velocity is that of the water from half a spacing off the face on, by W and by how far beyond, and so is the
+    distance. The mean of its logarithm is that of the mean less half the relative variance, which is right to 0.003; a
+    logarithm for each neighbour took three times as long. What sees less water than half a lattice is wet for that
+    share.
     """
     at, under, normal, area, roughness = facets
     spacing, half, viscosity, density = seen
     start, middle, _, index = lists
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
-    for f in range(at.size):
+    for f in prange(at.size):
         i = at[f]
         nx, ny, nz = normal[f, 0], normal[f, 1], normal[f, 2]
-        every, total, logs, away = 0.0, 0.0, 0.0, 0.0
+        every, total, away, squares = 0.0, 0.0, 0.0, 0.0
         sx, sy, sz = 0.0, 0.0, 0.0
-        for c in range(start[i], middle[i]):
+        for c in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[c]
             dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
             r2 = dx * dx + dy * dy + dz * dz
@@ -100,18 +102,19 @@ def rub(facets, lists, kinematics, weight, seen, stress):
             far = (dx * nx + dy * ny + dz * nz - under[f]) / spacing
             every += wt
             wt *= min(max(far - _FIRST, _THIN), 1.0)
-            total += wt
-            logs += wt * logarithm(max(far, 0.5 * _FIRST))
-            away += wt * max(far, 0.5 * _FIRST)
+            far = max(far, 0.5 * _FIRST)
+            total, away, squares = total + wt, away + wt * far, squares + wt * far * far
             sx, sy, sz = sx + wt * (u[j] - u[i]), sy + wt * (v[j] - v[i]), sz + wt * (w[j] - w[i])
         stress[f, 0] = stress[f, 1] = stress[f, 2] = 0.0
+        stress[f, 3] = every
         if total <= 0.0:
             continue
         sx, sy, sz = sx / total, sy / total, sz / total
         along = sx * nx + sy * ny + sz * nz
         sx, sy, sz = sx - along * nx, sy - along * ny, sz - along * nz
         speed = math.sqrt(sx * sx + sy * sy + sz * sz)
-        log, distance = logs / total + logarithm(spacing), spacing * away / total
+        mean, square = away / total, squares / total
+        log, distance = logarithm(spacing * mean) - 0.5 * (square / (mean * mean) - 1.0), spacing * mean
         force = density * stress_over_density(speed, distance, log, roughness[f], viscosity) * area[f]
         if speed > 0.0:
             force *= min(every / half, 1.0) / speed
@@ -119,25 +122,19 @@ def rub(facets, lists, kinematics, weight, seen, stress):
 
 
 @kernel
-def spread(facets, lists, place, weight, mass, stress, slip):
+def spread(facets, mass, stress, slip):
     """Slip of the samples that have faces, m/s2 over W: their stress over the mass, kg, of the water they see."""
-    at = facets.at
-    x, y, z = place
-    last, every = -1, 0.0
+    at, last = facets.at, -1
     for f in range(at.size):
         i = at[f]
         if i != last:
-            last, every = i, 0.0
+            last = i
             slip.x[i] = slip.y[i] = slip.z[i] = 0.0
-            for c in range(lists.start[i], lists.middle[i]):
-                j = lists.index[c]
-                dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
-                r2 = dx * dx + dy * dy + dz * dz
-                every += weight_at(weight, r2, 1.0 / math.sqrt(r2))[0]
-        if every > 0.0:
-            slip.x[i] -= stress[f, 0] / (mass * every)
-            slip.y[i] -= stress[f, 1] / (mass * every)
-            slip.z[i] -= stress[f, 2] / (mass * every)
+        if stress[f, 3] > 0.0:
+            seen = mass * stress[f, 3]
+            slip.x[i] -= stress[f, 0] / seen
+            slip.y[i] -= stress[f, 1] / seen
+            slip.z[i] -= stress[f, 2] / seen
 
 
 @kernel
@@ -173,7 +170,7 @@ def _by_sample(weight, d, slip, velocity, drag):
     return size * (slip[0] - velocity[0]), size * (slip[1] - velocity[1]), size * (slip[2] - velocity[2])
 
 
-@each
+@rows
 def drag_water(at, lists, kinematics, weight, rubbing, drag, acceleration):
     """Add to the acceleration of the water `at` what the samples it sees give it.
 
@@ -184,18 +181,21 @@ def drag_water(at, lists, kinematics, weight, rubbing, drag, acceleration):
     u, v, w = kinematics.velocity
     (qx, qy, qz), scale = rubbing
     ax, ay, az = acceleration.x, acceleration.y, acceleration.z
+    by_law = 1.0 if drag == 0.0 else 0.0
     for row in prange(at.size):
         i = at[row]
+        xi, yi, zi = x[i], y[i], z[i]
+        ui, vi, wi = (u[i], v[i], w[i]) if drag != 0.0 else (0.0, 0.0, 0.0)
         sx, sy, sz = 0.0, 0.0, 0.0
-        own = (u[i], v[i], w[i])
-        for c in range(middle[i], end[i]):
+        for c in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[c]
-            share = scale[j]
-            if share == 0.0:
-                continue
-            d = (x[j] - x[i], y[j] - y[i], z[j] - z[i])
-            fx, fy, fz = _by_sample(weight, d, (qx[j], qy[j], qz[j]), own, drag)
-            sx, sy, sz = sx + share * fx, sy + share * fy, sz + share * fz
+            dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
+            r2 = dx * dx + dy * dy + dz * dz
+            wt, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            share = scale[j] * (by_law * wt + drag * g)
+            sx += share * (qx[j] - ui)
+            sy += share * (qy[j] - vi)
+            sz += share * (qz[j] - wi)
         ax[i] += sx
         ay[i] += sy
         az[i] += sz
