@@ -7,7 +7,7 @@ import numpy as np
 from parsim.case import places
 from parsim.case.fill import TOUCH, water_at
 from parsim.errors import nearest, suggestion
-from parsim.geometry.faces import period, repeats, walled_sides
+from parsim.geometry.faces import names_of_walls, period, repeats, walled_sides
 from parsim.observe.sensors import Gauge
 
 PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
@@ -216,7 +216,7 @@ def sensors(case):
             if (value := getattr(sensor, axis, None)) is not None and not case.box.min[k] <= value <= case.box.max[k]
         ]
         wall, body = getattr(sensor, "wall", None), getattr(sensor, "body", None)
-        if wall is not None and not (getattr(case.box.faces, wall).holds_water and "xyz".index(wall[0]) in case.axes):
+        if wall is not None and wall not in names_of_walls(case):
             out.append(f'{key}.wall = "{wall}": is no wall of this case')
         elif wall is not None:
             out += [f"{key}.{fault}" for fault in _patch(case, sensor)]

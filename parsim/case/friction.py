@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from parsim.case.types import NotNegative, Real, Switch, Table
+from parsim.geometry.faces import names_of_walls
 
 FaceName = Literal["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
 
@@ -40,8 +41,7 @@ def faults(case):
     if not case.water.scheme.WET:
         given = [f"water.{name}" for name in ("friction", "eddies") if getattr(case.water, name) is not None]
         return [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
-    walls = [n for n in FaceName.__args__ if n[0] in "xz" or case.dimensions == 3]
-    walls = [name for name in walls if getattr(case.box.faces, name).holds_water]
+    walls = names_of_walls(case)
     if case.water.eddies is not None and case.water.eddies.kind == "mixing_length" and not walls:
         out.append('water.eddies.kind = "mixing_length": there is no wall to be at a distance from; use "smagorinsky"')
     if friction is None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from parsim.fluid.friction import SLIP, WEIGHT, Facets, Seen, mirror, rub, slip_of, spread
 from parsim.fluid.reference import Lattice
-from parsim.geometry.faces import SIDES, planes_of_walls, walled_sides
+from parsim.geometry.faces import names_of_walls, planes_of_walls
 from parsim.geometry.rotation import matrices
 from parsim.particles.state import BODY, GATE_DOWN, GATE_UP, WALL
 from parsim.particles.tables import Vectors
@@ -30,8 +30,8 @@ class Friction:
         self._lattice = lattice = Lattice(case.dimensions, case.spacing, case.water.scheme.support, WEIGHT)
         table, self._spacing = case.water.friction, case.spacing
         self._by_law = table.kind == "wall_law"
-        self._planes, named = planes_of_walls(case), [SIDES[a][s > 0] for a, s, _ in walled_sides(case)]
-        self._rubs = np.array([table.walls is None or name in table.walls for name in named], bool)
+        self._planes = planes_of_walls(case)
+        self._rubs = np.array([table.walls is None or name in table.walls for name in names_of_walls(case)], bool)
         self._bodies_rub, self._mass = table.bodies, case.water.density * lattice.volume
         half = sum(w for w, _, _, up in lattice.points() if up > 0.5 * case.spacing)
         viscosity, density = case.water.viscosity, case.water.density
@@ -48,11 +48,14 @@ class Friction:
             self.share = np.where(self._rubbing(p), p.scale, 0.0)
         else:
             self.share = np.zeros(len(p))  # of what has no face nothing is felt, in the halo as here
-            for facets in (self._fixed(p, np.arange(len(p))), self._own(p, np.flatnonzero(p.kind == BODY))):
-                self.share[facets.at] = 1.0
-            fixed, own = self._fixed(p, near.boundary), self._own(p, near.body)
-            self._turned = len(fixed.at), own.normal, p.body[own.at]
-            self._facets = Facets(*map(np.concatenate, zip(fixed, own, strict=True)))
+            fixed, own = self._fixed(p, np.arange(len(p))), self._own(p, np.flatnonzero(p.kind == BODY))
+            every = Facets(*map(np.concatenate, zip(fixed, own, strict=True)))
+            self.share[every.at] = 1.0
+            here = np.zeros(len(p), bool)
+            here[near.boundary] = True
+            self._facets = facets = Facets(*(each[here[every.at]] for each in every))
+            of_body = p.body[facets.at] >= 0
+            self._turned = np.flatnonzero(of_body), facets.normal[of_body], p.body[facets.at[of_body]]
             self.stress = np.zeros((len(self._facets.at), 4))
 
     def find_slip(self, flow):
@@ -64,15 +67,14 @@ class Friction:
             spread(self._facets, self._mass, self.stress, slip_of(p))
         else:
             mirror(flow.near.boundary, lists, p.kinematics, weight, slip_of(p))
-        with flow.domain.refreshing(*SLIP):
-            pass
+        flow.domain.refresh(*SLIP)
 
     def _turn(self):
         """Bring the normals of bodies to their present pose."""
-        count, normal, body = self._turned
+        at, normal, body = self._turned
         if len(body):
             turn = matrices(self.bodies.quaternion)
-            self._facets.normal[count:] = np.einsum("fij,fj->fi", turn[body], normal)
+            self._facets.normal[at] = np.einsum("fij,fj->fi", turn[body], normal)
 
     def _rubbing(self, p):
         """Which particles rub: (n,) bool."""

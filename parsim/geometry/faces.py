@@ -15,6 +15,11 @@ def walled_sides(case, to="water"):
                 yield axis, sign, level
 
 
+def names_of_walls(case):
+    """Names of the sides that are walls to water, such as "z_min", in the order of `planes_of_walls`."""
+    return [SIDES[axis][sign > 0] for axis, sign, _ in walled_sides(case)]
+
+
 def _holds(case, name, to):
     side = getattr(case.box.faces, name)
     return {"water": side.holds_water, "bodies": side.holds_bodies}[to]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import scales
-from parsim.geometry.faces import SIDES, planes_of_walls, walled_sides
+from parsim.geometry.faces import names_of_walls, planes_of_walls
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Patch
 from parsim.particles.state import WALL
@@ -27,8 +27,7 @@ class Forces:
 
     def __init__(self, case: Case) -> None:
         self._patches = [sensor for sensor in case.output.sensors if isinstance(sensor, Patch)]
-        named = [SIDES[axis][side > 0] for axis, side, _ in walled_sides(case)]
-        self._planes = dict(zip(named, planes_of_walls(case), strict=True))
+        self._planes = dict(zip(names_of_walls(case), planes_of_walls(case), strict=True))
         self._unit, self._spacing = scales(case).force, case.spacing
         self._used = np.isin(range(3), case.axes)
         self._head = case.water.density * np.array(case.gravity)

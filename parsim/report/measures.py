@@ -97,3 +97,11 @@ def verdict(value: float | None, number: Published) -> str:
     nearest = number.low if value < number.low else number.high
     share = f" ({(value - nearest) / nearest:+.0%})" if nearest else ""
     return f"{abs(value - nearest):.3g} {number.unit} {'below' if value < nearest else 'above'}{share}"
+
+
+def mean_profile(series: dict[str, np.ndarray], line: str, after: float) -> tuple[np.ndarray, np.ndarray]:
+    """Heights, m, on a line of the series of velocities, and the mean velocity downstream there after a time, s."""
+    here = (series["line"] == line) & (series["time"] >= after)
+    z, row = np.unique(series["z"][here], return_inverse=True)
+    count = series["particles"][here]
+    return z, np.bincount(row, series["u"][here] * count) / np.bincount(row, count)

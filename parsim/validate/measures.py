@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.case.model import parse
+from parsim.report.measures import mean_profile
 
 if TYPE_CHECKING:
     from parsim.output.reader import Run
@@ -122,7 +123,7 @@ def mean_of(run: Run, series: str, column: str, after: float, rows: dict[str, st
 
 def off_log_law(run: Run, line: str, after: float, shear: float, roughness: float, depth: float) -> float:
     """Largest distance, over the mean, of the velocity on a line from u*/0.41 ln(30 z / ks) for 0.1 < z/H < 0.9."""
-    z, u = _profile(run, line, after)
+    z, u = mean_profile(run.series("velocities"), line, after)
     here = (z > 0.1 * depth) & (z < 0.9 * depth)
     exact = shear / 0.41 * np.log(30.0 * z[here] / roughness)
     mean = shear / 0.41 * (math.log(30.0 * depth / roughness) - 1.0)
@@ -131,17 +132,8 @@ def off_log_law(run: Run, line: str, after: float, shear: float, roughness: floa
 
 def off_parabola(run: Run, line: str, after: float, mean: float, height: float) -> float:
     """Root of the mean squared distance, over the mean, of the velocity on a line from 6 U (z/H)(1 - z/H)."""
-    z, u = _profile(run, line, after)
+    z, u = mean_profile(run.series("velocities"), line, after)
     return float(np.sqrt(np.mean((u / mean - 6.0 * z / height * (1.0 - z / height)) ** 2)))
-
-
-def _profile(run: Run, line: str, after: float) -> tuple[np.ndarray, np.ndarray]:
-    """Heights and mean velocities downstream on a line after a time, s."""
-    series = run.series("velocities")
-    here = (series["line"] == line) & (series["time"] >= after)
-    z, row = np.unique(series["z"][here], return_inverse=True)
-    count = series["particles"][here]
-    return z, np.bincount(row, series["u"][here] * count) / np.bincount(row, count)
 
 
 MEASURES = {

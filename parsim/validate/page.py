@@ -12,6 +12,7 @@ from parsim.output.frames import write_text
 from parsim.output.reader import open as open_run
 from parsim.report.build import build
 from parsim.report.page import page, picture, section, table
+from parsim.validate.record import shown
 
 TITLES = ("quantity", "value", "unit", "reference", "error", "error of the source's own model", "bar", "")
 _PICTURES = ("bodies", "sensors", "gauges", "front")  # of the page of a run, besides its last snapshot
@@ -40,16 +41,23 @@ def _section(out: Path, case: str, rows: list[dict[str, Any]]) -> str:
     report, title = out / "report", open_run(out).case.get("title", case)
     pictures = [*sorted(report.glob("snapshot_*.png"))[-1:], *(report / f"{name}.png" for name in _PICTURES)]
     link = f'<p><a href="{out.name}/report/index.html">All of this run</a></p>'
-    shown = [
+    pages = [
         picture(path.read_bytes(), "png", f"{path.stem} of {case}", f"{title}: {path.stem.split('_')[0]}")
         for path in pictures
         if path.is_file()
     ]
-    return section(case, told, *shown, link)
+    return section(case, told, *pages, link)
 
 
 def _told(row: dict[str, Any]) -> tuple[Any, ...]:
-    reference = row["reference"]
-    shown = " to ".join(f"{value:.6g}" for value in (reference if isinstance(reference, list) else [reference]))
     result = "failed" if row["value"] is None else "met" if row["passed"] else "MISSED"
-    return row["quantity"], row["value"], row["unit"], shown, row["error"], row["document"], row["bar"], result
+    return (
+        row["quantity"],
+        row["value"],
+        row["unit"],
+        shown(row["reference"]),
+        row["error"],
+        row["document"],
+        row["bar"],
+        result,
+    )

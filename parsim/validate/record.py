@@ -27,7 +27,7 @@ def note(path: Path, rows: Iterable[dict[str, Any]]) -> None:
     by = {"date": datetime.now(UTC).date().isoformat(), "version": _version(), "machine": processor()}
     for row in rows:
         if row["value"] is not None:
-            known[row["case"], row["quantity"]] = {name: _told(row[name]) for name in COLUMNS[:8]} | by
+            known[row["case"], row["quantity"]] = {name: shown(row[name]) for name in COLUMNS[:8]} | by
     text = io.StringIO()
     table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
     table.writeheader()
@@ -46,7 +46,8 @@ def _read(path: Path) -> list[dict[str, str]]:
     return rows
 
 
-def _told(value: Any) -> str:
+def shown(value: Any) -> str:
+    """A value of a row as text; of a range both ends."""
     if isinstance(value, list):
         return " to ".join(f"{each:.6g}" for each in value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)

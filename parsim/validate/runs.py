@@ -16,7 +16,7 @@ from parsim.report.measures import Published, published
 from parsim.validate.bars import Bar, bars
 from parsim.validate.measures import MEASURES
 from parsim.validate.page import write
-from parsim.validate.record import note
+from parsim.validate.record import note, shown
 
 MISSED = 3
 
@@ -27,8 +27,7 @@ def validate(
     """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed.
 
     Runs whose output is in `out` go on there, if they are of the same case and not done, and out/index.html shows all
-    that was run. `record`: a table of results,
-    where the rows of what has been run take the place of those before.
+    that was run. `record`: a table of results, where the rows of what has been run take the place of those before.
     """
     held = bars(list(names), level)
     with tempfile.TemporaryDirectory() as scratch:
@@ -103,8 +102,6 @@ def told(row: dict[str, Any]) -> str:
     """A row as a line of text."""
     if row["value"] is None:
         return f"  {row['quantity']}: the run failed"
-    reference = row["reference"]
-    shown = " to ".join(f"{v:.6g}" for v in (reference if isinstance(reference, list) else [reference]))
     words = f"  {'met   ' if row['passed'] else 'MISSED'} {row['quantity']}: {row['value']:.6g} {row['unit']}"
-    words += f", reference {shown}, error {row['error']:.2g}, bar {row['bar']:.2g}"
+    words += f", reference {shown(row['reference'])}, error {row['error']:.2g}, bar {row['bar']:.2g}"
     return words + (f", the document's own error {row['document']:.2g}" if row["document"] is not None else "")

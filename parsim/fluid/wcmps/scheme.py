@@ -149,8 +149,7 @@ class WCMPS:
             with self.timers("eddies"):
                 turbulence.eddy_viscosity(*given, smooth.weight, eddies, smooth.number, smooth.dimensions, p.eddy)
         if self._resolved:
-            with domain.refreshing("eddy", "surface"):
-                pass
+            domain.refresh("eddy", "surface")
             with self.timers("eddies"):
                 viscosities, viscous = (self.viscosity, p.eddy), (self._mixing, smooth.dimensions)
                 turbulence.mix(*given, p.surface, smooth.weight, viscosities, viscous, p.acceleration)

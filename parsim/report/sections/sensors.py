@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.report.curves import LINES, figure
-from parsim.report.measures import columns
+from parsim.report.measures import columns, mean_profile
 from parsim.report.page import section
 
 if TYPE_CHECKING:
@@ -62,12 +62,9 @@ def _over_time(axes: Axes, series: dict[str, Any], names: tuple[str, str | None]
 def _profiles(axes: Axes, series: dict[str, Any]) -> None:
     """Mean velocity downstream over height on each line, of the last tenth of the run."""
     time = series["time"]
-    late = time >= time[-1] - 0.1 * (time[-1] - time[0])
     for name in dict.fromkeys(series["line"].tolist()):
-        here = late & (series["line"] == name)
-        heights, row = np.unique(series["z"][here], return_inverse=True)
-        count = np.bincount(row, series["particles"][here])
-        axes.plot(np.bincount(row, series["u"][here] * series["particles"][here]) / count, heights, label=name)
+        heights, u = mean_profile(series, name, time[-1] - 0.1 * (time[-1] - time[0]))
+        axes.plot(u, heights, label=name)
     axes.set_xlabel("u (m/s)")
     axes.set_ylabel("z (m)")
     axes.legend(fontsize=7, frameon=False, ncols=4)
