@@ -7,13 +7,17 @@ from parsim.particles.state import WALL, Particles, make_id
 
 
 def lattice_axis(case, axis, layers):
-    """Lattice coordinates along an axis, m, `layers` beyond each wall, and which side each is on (-1, 0, 1)."""
+    """Lattice coordinates along an axis, m, `layers` beyond each wall, and which side each is on (-1, 0, 1).
+
+    Where the walls beside a side go on, the coordinates do too, as if they were in the box.
+    """
     if case.dimensions == 2 and axis == 1:
         return np.array([0.5]), np.zeros(1, np.int64)
     count = round(case.box.size[axis] / case.spacing)
-    below, above = (layers if getattr(case.box.faces, side).holds_water else 0 for side in SIDES[axis])
+    low, high = (getattr(case.box.faces, side) for side in SIDES[axis])
+    below, above = (layers if side.holds_water or side.continues else 0 for side in (low, high))
     index = np.arange(-below, count + above)
-    side = (index >= count).astype(np.int64) - (index < 0)
+    side = ((index >= count) & high.holds_water).astype(np.int64) - ((index < 0) & low.holds_water)
     return case.box.min[axis] + (index + 0.5) * case.spacing, side
 
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from parsim.case import bodies, friction, places, repeats
+from parsim.case import bodies, channel, friction, openings, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -27,7 +27,8 @@ def checked(case, messages):
         bodies.gate,
         bodies.sensors,
     )
-    for check in (_spacing, _box, _faces, _water, fills.faults, friction.faults, _speed, _ramp, *of_bodies):
+    of_water = (_water, fills.faults, friction.faults, channel.faults, openings.faults, _speed)
+    for check in (_spacing, _box, _faces, *of_water, _ramp, *of_bodies):
         faults += check(case)
     if messages or faults:
         raise InputError([*messages, *faults])
@@ -80,7 +81,8 @@ def _completed(case):
         s.model_copy(update={"y": middle}) if hasattr(s, "y") and (s.y is None or case.dimensions == 2) else s
         for s in case.output.sensors
     )
-    update = {"bodies": tuple(floated), "output": case.output.model_copy(update={"sensors": sensors})}
+    output = case.output.model_copy(update={"sensors": sensors})
+    update = {"bodies": tuple(floated), "channel": channel.completed(case), "output": output}
     if case.gate and case.gate.bottom is None:
         update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})
     if not case.water.fill and not {"scheme", "speed"} & case.water.model_fields_set:

@@ -5,6 +5,7 @@ import re
 import tomllib
 
 from parsim.case import examples
+from parsim.case.course import read_courses
 from parsim.errors import InputError, nearest, suggestion
 
 
@@ -27,6 +28,13 @@ def read(path, inside=()):
 
 def locate(data, folder):
     """Make the paths of files that bodies name whole: they count from where the case is."""
+    if isinstance(data.get("channel"), dict):
+        read_courses(data["channel"], folder, "channel")
+    box = data.get("box")
+    faces = box.get("faces") if isinstance(box, dict) else None
+    for name, side in faces.items() if isinstance(faces, dict) else ():
+        if isinstance(side, dict):
+            read_courses(side, folder, f"box.faces.{name}")
     bodies = data.get("bodies")
     for body in bodies if isinstance(bodies, list) else ():
         shape = body.get("shape") if isinstance(body, dict) else None

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from parsim.boundary.sides import OPEN, WALL, Side
+from parsim.case.channel import Channel
 from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
 from parsim.case.file import locate, read, replaced, written
@@ -146,6 +147,7 @@ class Case(Table):
     wall_material: Name | None = Field(None, description="material of walls and gate; left out: the first material")
     box: Box = Field(description="the box that holds everything")
     water: Water = Field(Water(), description="the water and its scheme")
+    channel: Channel | None = Field(None, description="a discharge that is held between periodic sides; left out: none")
     gate: Gate | None = Field(None, description="a plate that rises; left out: none")
     contacts: Contacts = Field(Contacts(), description="how bodies touch")
     run: Run = Field(description="how long and in what steps")

@@ -39,7 +39,7 @@ class BodySamples:
     """
 
     def __init__(self, case, bodies, layers, units):
-        self.bodies, self._gravity = bodies, np.array(case.gravity, float)
+        self.bodies = bodies
         self._way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
         self._units, self._low, self._period = units, np.array(case.box.min), period(case)
         sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
@@ -126,10 +126,10 @@ class BodySamples:
         arms_of(at, p.body, p.place, self.shift, centre, out)
         return out
 
-    def answer(self, p, near, pose, load, added, lever, step):
+    def answer(self, p, near, pose, load, added, lever, step, gravity):
         """Find the accelerations of the bodies, give the samples those and their pressures; loads (bodies, 6), N, N m.
 
-        pose: position and quaternion; step: its beginning and length, s.
+        pose: position and quaternion; step: its beginning and length, s; gravity (3,), m/s2.
 
         The water's load is linear in a body's acceleration: `load` less `added` times its change. A load at the
         acceleration of the step before, which is the explicit way, grows without end where the water near a body
@@ -139,7 +139,7 @@ class BodySamples:
         change = np.zeros((len(b), 6))
         (position, quaternion), others = pose, b.contact_load + b.spring_load
         given = Given(b.mass, b.inertia, quaternion, others, b.spin, *b.constraints(*step))
-        accelerate_bodies(load, added, given, self._gravity, b.acceleration, b.angular_acceleration, change)
+        accelerate_bodies(load, added, given, np.array(gravity), b.acceleration, b.angular_acceleration, change)
         respond(near.body, p.body, self.arms(p, near.body, position), change, lever, p.p)
         self.place(p, position, quaternion)
         return load

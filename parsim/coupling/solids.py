@@ -7,6 +7,8 @@ from parsim.boundary.wall_samples import Walls
 from parsim.case.scales import power_of_two, scales
 from parsim.coupling.films import Films
 from parsim.coupling.friction import Friction, Rubbing
+from parsim.coupling.openings import Openings
+from parsim.coupling.pull import Pull
 from parsim.coupling.samples import BodySamples
 from parsim.fluid.friction import slip_of
 from parsim.solid.bodies import from_case
@@ -16,7 +18,8 @@ from parsim.solid.contacts import Contacts
 class Solids:
     """Walls, gate and bodies of a case with the samples that they show to the water, as attributes.
 
-    bodies, contacts; gate, or None; samples, of the bodies; films; walls. `sources`: all that has samples.
+    bodies, contacts; pull, on all that is free; openings; gate, or None; samples, of the bodies; films; walls.
+    `sources`: all that has samples.
     """
 
     def __init__(self, case, layers, lattice, timers):
@@ -26,10 +29,12 @@ class Solids:
         self.films = Films(case, self.bodies, self.samples, lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
-        self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [])
+        self.pull = Pull(case)
+        self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [], self.pull.at)
         self.friction = None
         if case.water.friction is not None:
             self.friction = Friction(case, self.bodies, self.samples, self.gate)
+        self.openings = Openings(case, layers)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._wet = case.water.scheme.WET
         self._load = np.zeros((len(self.bodies), 6))  # of the water in this step
@@ -39,16 +44,23 @@ class Solids:
         """What gives the domain samples at a rebuild: nothing where there is no water to see them."""
         if not self._wet:
             return []
-        return [source for source in (self.samples, self._gate_samples, self.walls) if source is not None]
+        return [
+            source
+            for source in (self.samples, self._gate_samples, self.openings.inlet, self.walls)
+            if source is not None
+        ]
 
     @property
     def parts(self):
         """What a restart needs, by name: objects with `kept` and `restore`."""
-        return {"bodies": self.bodies, "contacts": self.contacts}
+        parts = {"bodies": self.bodies, "contacts": self.contacts}
+        parts |= {"pull": self.pull} if self.pull else {}
+        return parts | ({"openings": self.openings} if self.openings else {})
 
     def find(self, flow):
         """Note, after a rebuild, which of this rank's particles are near bodies."""
         self.samples.note_shifts(flow.particles)
+        self.openings.find(flow.particles, flow.domain.own)
         if self.pushed():
             self.samples.find(flow.domain, flow.near)
             self.films.find(flow.domain)
@@ -58,6 +70,17 @@ class Solids:
     def place(self, flow, time, ahead):
         """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""
         self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
+        self.openings.place(flow.particles, ahead)
+
+    def hold(self, flow, at_rest):
+        """Give the water that goes out the pressure that is there; `at_rest`: see `Scheme`."""
+        if self.openings.outlet:
+            self.openings.outlet.hold(flow.particles, at_rest)
+
+    def release(self, flow):
+        """Give it back the velocity that it had at the start of the step."""
+        if self.openings.outlet:
+            self.openings.outlet.release(flow.particles)
 
     def rub(self, flow):
         """What walls and bodies make the water feel of their friction, a `friction.Rubbing`; None if nothing."""
@@ -83,7 +106,7 @@ class Solids:
         added = self.films.loads(domain, near, plate, *pose)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
         self.films.keep(*rims)
-        self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt))
+        self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt), flow.gravity)
 
     def driven(self, time):
         """Whether the gate moves at `time`, s."""
@@ -106,6 +129,7 @@ class Solids:
                 self.bodies.spin *= flow.keep
         with self.timers("bodies"):
             self._place(flow.particles, self.bodies.position, self.bodies.quaternion, time + dt)
+            self.openings.advance(flow.particles, dt)
 
     def _place(self, p, position, quaternion, time):
         if self.gate:

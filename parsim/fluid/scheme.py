@@ -6,7 +6,8 @@ from typing import NamedTuple, Protocol
 class Flow(NamedTuple):
     """The water: `Particles`, `Neighbours`, `Domain` (refreshing, sum, count, max); no rank, no case, no body.
 
-    speed, m/s: the largest of anything; keep: the share of velocity kept in this step, less than 1 while it settles.
+    speed, m/s: the largest of anything; keep: the share of velocity kept in this step, less than 1 while it settles;
+    gravity, m/s2: what pulls in this step.
     """
 
     particles: object
@@ -14,6 +15,7 @@ class Flow(NamedTuple):
     domain: object
     speed: float = 0.0
     keep: float = 1.0
+    gravity: tuple = (0.0, 0.0, 0.0)
 
 
 class Solids(Protocol):
@@ -21,6 +23,12 @@ class Solids(Protocol):
 
     def place(self, flow, time, ahead):
         """Bring the samples of all that is solid to where it is at time + ahead, s."""
+
+    def hold(self, flow, at_rest):
+        """Give water beyond an outlet, at the half step, the pressure that is there by the scheme's `at_rest`."""
+
+    def release(self, flow):
+        """Give it, at the full step, the velocity that it had."""
 
     def rub(self, flow):
         """What the water feels of the friction of walls and bodies, slip and share of samples; None where none rubs."""

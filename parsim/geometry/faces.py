@@ -29,7 +29,8 @@ def ends_of_walls(case, to="water"):
     """Lowest and highest corner (3,), m, of where there are walls: they end where things leave, and only there."""
 
     def leaves(name):
-        return not (_holds(case, name, to) or getattr(case.box.faces, name).repeats)
+        side = getattr(case.box.faces, name)
+        return not (_holds(case, name, to) or side.repeats or side.continues)
 
     low = [case.box.min[a] if leaves(low) else -np.inf for a, (low, _) in enumerate(SIDES)]
     high = [case.box.max[a] if leaves(high) else np.inf for a, (_, high) in enumerate(SIDES)]

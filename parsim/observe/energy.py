@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import gravity_at, scales
+from parsim.geometry.faces import period
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 
@@ -33,12 +34,13 @@ class Energy:
     )
 
     def __init__(self, case: Case) -> None:
-        self._case, self._unit = case, scales(case).energy
+        self._case, self._unit, self._period = case, scales(case).energy, period(case)
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 3))
-        gravity = gravity_at(self._case, s.time)
+        # nothing falls along an axis that repeats
+        gravity = tuple(np.where(np.isinf(self._period), gravity_at(self._case, s.time), 0.0).tolist())
         energies(at, p.kinematics, s.scheme.mass, gravity, out)
         out[:, 2] = s.scheme.elastic(p, at)
         b, c = s.bodies, s.contacts
@@ -48,7 +50,7 @@ class Energy:
             b.potential_energy(gravity),
             c.elastic_energy(),
         ]
-        return [[s.dt, *parts, c.driven_work, c.dissipated, sum(parts)]]
+        return [[s.dt, *parts, c.driven_work + s.solids.pull.work, c.dissipated, sum(parts)]]
 
 
 @kernel

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from parsim.observe.bodies import Bodies
+from parsim.observe.channel import Channel
 from parsim.observe.counts import Counts
 from parsim.observe.energy import Energy
 from parsim.observe.fluxes import Fluxes
@@ -14,6 +15,7 @@ from parsim.observe.gauges import Gauges
 from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
+from parsim.observe.openings import Openings
 from parsim.observe.probes import Probes
 from parsim.observe.velocities import Velocities
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from parsim.run.simulation import Simulation
 
 # what is seen at a time; what has left is told at once
-OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities)
+OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings)
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
 

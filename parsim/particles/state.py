@@ -9,7 +9,7 @@ import numpy as np
 
 from parsim.particles.tables import Kinematics, Vectors
 
-FLUID, BODY, GATE_UP, GATE_DOWN, WALL = 0, 1, 2, 3, 4
+FLUID, BODY, GATE_UP, GATE_DOWN, WALL, INLET = 0, 1, 2, 3, 4, 5
 INTERNAL, VICINITY, SURFACE, DETACHED = 0, 1, 2, 3
 POSITION = ("x", "y", "z")
 VELOCITY = ("u", "v", "w")
@@ -29,7 +29,7 @@ class Field(NamedTuple):
 
 COMMON = (  # fields of every scheme
     Field("id", "i8", "-", True, "from the place in the initial lattice; unique over all kinds"),
-    Field("kind", "u1", "-", True, "fluid, body, gate seen from upstream or downstream, wall"),
+    Field("kind", "u1", "-", True, "fluid, body, gate seen from upstream or downstream, wall, water about to come in"),
     Field("body", "i4", "-", True, "index of the rigid body, -1 elsewhere"),
     Field("sample", "i4", "-", True, "index of the sample in its body or gate, -1 elsewhere"),
     Field("x", "f8", "m", True, "position downstream"),

@@ -10,6 +10,7 @@ import numpy as np
 from parsim.fluid.scheme import Flow
 from parsim.machine.timers import Timers
 from parsim.output.checkpoint import Snapshot
+from parsim.particles.state import Particles
 from parsim.run import guards
 from parsim.run.fill import columns, flow, water
 from parsim.run.setup import Models
@@ -17,7 +18,6 @@ from parsim.run.setup import Models
 if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.domain.comm import Comm
-    from parsim.particles.state import Particles
 
 _COUNTERS = ("time", "step_count", "dt", "speed", "rebuilds")
 _MARGIN = 1.2  # how much faster than at its start a step may be before pairs at the edge of the support are missed
@@ -97,18 +97,22 @@ class Simulation:
             self._balance(self.rebuilds % self.case.run.balance_every == 0)
             self._rebuild(self.fluid)
         keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
+        self.solids.pull.steer(self.flow(), self.bodies, self.scheme.lattice.volume, self.time, dt)
         self.scheme.step(self.flow(keep), self.solids, self.time, dt)
         if self.time < 0.0 <= self.time + dt:
             flow(self.case, self.domain.particles)
         self.time += dt
         self.step_count += 1
         self.since += 1
+        if self.solids.openings:
+            self.solids.openings.look(self.flow(), self.time, dt)
         with self.domain.refreshing(*self.scheme.STATE):
             self._look()
 
     def flow(self, keep: float = 1.0) -> Flow:
         """The water as the scheme sees it; `keep`: see `Flow`."""
-        return Flow(self.domain.particles, self.near, self.domain, self.speed, keep)
+        pull = self.solids.pull.at(self.time + 0.5 * self.dt)
+        return Flow(self.domain.particles, self.near, self.domain, self.speed, keep, pull)
 
     def _outrun(self, dt):
         """Whether the lists would miss pairs within this step; the same on every rank."""
@@ -125,7 +129,7 @@ class Simulation:
 
     def _rebuild(self, fluid):
         domain, near = self.domain, self.near
-        left = self._take_out()
+        left, fluid = self._take_out(), self._exchange(fluid)
         with self.timers("rebuild"):
             domain.rebuild(fluid, self.time)
         with self.timers("neighbours"):
@@ -143,6 +147,18 @@ class Simulation:
         self._start = np.stack([p.x[at], p.y[at], p.z[at]])
         self.moved, self._solid_moved, self.since = 0.0, 0.0, 0
         self.rebuilds += 1
+
+    def _exchange(self, fluid):
+        """Take what has gone out of this rank's water, and give the first rank what has come in: the water then."""
+        openings = self.solids.openings
+        if openings.outlet:
+            out = openings.taken(fluid)
+            openings.outlet.removed += self.domain.count(int(out.sum()))[0]
+            fluid = fluid.take(~out)
+        if openings.inlet:
+            born = openings.emit(self.scheme.at_rest)
+            fluid = Particles.join([fluid, born]) if self.comm.rank == 0 else fluid
+        return fluid
 
     def _take_out(self):
         """Take out the bodies that are wholly outside the grid, as the domain does with water: rows of `gone`."""
@@ -171,7 +187,9 @@ class Simulation:
         with self.timers("sums"):
             fastest, moved = map(float, self.domain.max(fastest, moved))
         soon = self.time + self.scheme.time_step(fastest)  # a gate that is about to rise counts
-        solid = max(self.bodies.surface_speed(), self.gate.velocity(soon) if self.gate else 0.0)
+        solid = max(
+            self.bodies.surface_speed(), self.solids.openings.speed, self.gate.velocity(soon) if self.gate else 0.0
+        )
         if not max(fastest, solid) < self.scheme.sound:
             raise guards.runaway(self)
         self._solid_moved += self.dt * solid

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from parsim.case.scales import gravity_at
+from parsim.case.scales import gravity_at as ramped
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.rotation import matrices
 from parsim.solid import table
@@ -42,15 +42,16 @@ _SHARE = 0.1  # of the smallest edge that a body may move in one step
 class Contacts:
     """Moves the bodies of a case, deterministically: every rank does the same and gets the same bits.
 
+    gravity_at: what pulls at a time, (3,), m/s2; that of the case if left out.
     driven: plates with half (3,), m, `centre` and `velocity` at a time (`parsim.boundary.gate.Gate`).
     Attributes: dissipated, J, energy lost in contacts so far; driven_work, J, work of these on bodies and on water so
     far; count, elements that touch; steps, sub-steps of the last step; residual, of hard bodies' impulses, and
     overlap, over the least width of a body that touches, the largest so far.
     """
 
-    def __init__(self, bodies, case, driven=()):
+    def __init__(self, bodies, case, driven=(), gravity_at=None):
         self.bodies, self._driven = bodies, list(driven)
-        self._gravity_at, self._gravity = functools.partial(gravity_at, case), np.array(case.gravity, float)
+        self._gravity_at, self._gravity = gravity_at or functools.partial(ramped, case), np.array(case.gravity, float)
         self._steps_per_contact = case.contacts.steps_per_contact
         material = list(case.materials).index(case.wall_material) if case.materials else 0
         self._walls, self._period = _of_material(planes_of_walls(case, "bodies"), material), period(case)

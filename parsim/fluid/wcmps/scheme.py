@@ -33,7 +33,7 @@ class WCMPS:
         water, choice = case.water, case.water.scheme
         self.timers = timers or Timers()
         self.lattice = lattice = Lattice(case.dimensions, case.spacing, choice.support, choice.weight)
-        self.density, self.sound, self.gravity = water.density, case.sound_speed, case.gravity
+        self.density, self.sound = water.density, case.sound_speed
         self.stiffness = self.sound**2 * water.density / 7.0
         self.viscosity, self.noise_damping = water.viscosity, choice.noise_damping
         self.mass = water.density * self.lattice.volume
@@ -95,7 +95,8 @@ class WCMPS:
         with self.timers("predict"):
             solids.place(flow, time, 0.5 * dt)
             self._predict(p, dt)
-        self._press(p, near)
+            solids.hold(flow, self.at_rest)
+        self._press(p, near, flow.gravity)
         rubbing = solids.rub(flow)
         with self.timers("bodies"):
             if solids.pushed():
@@ -105,7 +106,8 @@ class WCMPS:
         self._accelerate(domain, near, dt)
         self._shear(domain, near, rubbing, dt)
         with self.timers("move"):
-            updates.kick(near.fluid, self.gravity, flow.keep, dt, p.acceleration, p.velocity)
+            updates.kick(near.fluid, flow.gravity, flow.keep, dt, p.acceleration, p.velocity)
+            solids.release(flow)
         solids.advance(flow, time, dt)
         self._finish(domain, near, dt, flow.speed)
 
@@ -114,7 +116,7 @@ class WCMPS:
         state = 0.5 * dt, self.lattice.number, self.stiffness
         updates.predict(p.kind, p.surface, p.velocity, p.rate, state, p.place, p.n, p.p)
 
-    def _press(self, p, near):
+    def _press(self, p, near, gravity):
         """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
             sweeps.boundary_pressure(
@@ -124,7 +126,7 @@ class WCMPS:
                 p.place,
                 p.acceleration,
                 self.lattice.weight,
-                (*self.gravity, self.density),
+                (*gravity, self.density),
                 p.p,
             )
 

@@ -1,0 +1,161 @@
+"""Water that comes in: a conveyor of samples on the lattice of the inlet, which become water as they pass the side.
+
+A *place* is a site of the lattice in y and z. Its k-th particle stands at x = x_in + travel - (k + 1/2) l0, whatever
+was before: position, moment and id of each follow from the travel of its place, which is all that is kept, and no
+particle enters before the last has left. To the water, samples before the side are a boundary that moves with it: their
+pressure is that of the water that they see.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.boundary.wall_samples import lattice_axis
+from parsim.case.course import at_time
+from parsim.case.fill import water_at
+from parsim.particles.lattice import Lattice
+from parsim.particles.state import FLUID, INLET, Particles, make_id
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from parsim.case.model import Case
+    from parsim.domain.slab import Slab
+
+_LAG = 2.0  # sqrt(H / g), of the level that the inlet follows
+_SLACK = 0.25  # spacings by which the level must pass the middle of a row to wake it or send it to sleep
+
+
+class Inlet:
+    """The inlet of a case at x_min. level, m: of the water that comes in; discharge, m3/s (2D: m2/s), as asked now.
+
+    speed (places,), m/s; travel (places,), m; first (places,), particles that each has given to the water so far.
+    """
+
+    def __init__(self, case: Case, layers: int) -> None:
+        self._side, self._case, self._layers, l0 = case.box.faces.x_min, case, layers, case.spacing
+        self.x, self._floor = case.box.min[0], case.box.min[2]
+        across, beyond = lattice_axis(case, 1, 0)
+        up = np.arange(self._floor + 0.5 * l0, case.box.max[2], l0)
+        y, z = np.meshgrid(across[beyond == 0], up, indexing="ij")
+        self._y, self._z = y.ravel(), z.ravel()
+        self._area = l0 if case.dimensions == 2 else l0 * l0
+        self._lag = _LAG * np.sqrt(case.depth / -case.gravity[2])
+        self._id = sum(Lattice(fill.min, fill.max, l0, case.axes).size for fill in case.water.fill)
+        standing = water_at(case.water.fill, self.x + 0.5 * l0, 0.5 * (case.box.min[1] + case.box.max[1]))
+        self.level, self.discharge = standing[1] if standing else self._floor, 0.0
+        count = self._y.size
+        self.travel, self.speed = np.zeros(count), np.zeros(count)
+        self.first, self.awake = np.zeros(count, np.int64), np.zeros(count, bool)
+        self._at, self._of, self._behind = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
+        self._wake()
+        self.follow(math.nan, case.start, 0.0)
+
+    def follow(self, level: float, time: float, dt: float) -> None:
+        """Follow the `level`, m, that was seen inside over dt, s, and set the speeds of the step at `time`, s."""
+        if self._side.level is not None:
+            self.level = at_time(self._side.level, time)
+        elif np.isfinite(level):
+            self.level += min(dt / self._lag, 1.0) * (level - self.level)
+        self.discharge = at_time(self._side.discharge, time) if time >= 0.0 else 0.0
+        share = self._shares()
+        total = math.fsum(share) * self._area
+        self.speed = share * (self.discharge / total) if total > 0.0 else share
+
+    def _shares(self):
+        above, depth = self._z - self._floor, self.level - self._floor
+        shares = np.ones(above.size) if self._side.profile is None else self._side.profile.at(above, depth)
+        return np.where(self.awake, shares, 0.0)
+
+    def _wake(self):
+        """Wake the places that the level has reached, send to sleep those that it has left."""
+        top, slack = self._z + 0.5 * self._case.spacing, _SLACK * self._case.spacing
+        before = self.awake
+        self.awake = np.where(before, top < self.level + 0.5 * self._case.spacing + slack, top <= self.level + slack)
+        woken = self.awake & ~before
+        self.travel[woken] = self.first[woken] * self._case.spacing
+
+    def emit(self, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> Particles:
+        """What has passed the side since it was asked last, as water in balance: Particles, the same on all ranks."""
+        l0 = self._case.spacing
+        last = np.where(self.awake, np.floor(self.travel / l0 + 0.5).astype(np.int64), self.first)
+        count = np.maximum(last - self.first, 0)
+        place = np.repeat(np.arange(count.size), count)
+        number = self.first[place] + np.arange(place.size) - np.repeat(np.cumsum(count) - count, count)
+        head = np.maximum(self.level - self._z[place], 0.0)
+        pressure = self._case.water.density * -self._case.gravity[2] * head
+        born = Particles(
+            place.size,
+            self._case.water.scheme.fields,
+            id=make_id(FLUID, self._id + number * self._z.size + place),
+            kind=FLUID,
+            x=self.x + self.travel[place] - (number + 0.5) * l0,
+            y=self._y[place],
+            z=self._z[place],
+            u=self.speed[place],
+            **at_rest(pressure),
+        )
+        self.first += count
+        self._wake()
+        return born
+
+    def samples(self, slab: Slab, time: float) -> Particles:
+        """The samples of the slab, `layers` deep, nearest first: Particles with layer and place as `sample`."""
+        place = np.flatnonzero(self.awake)
+        layer, place = (each.ravel() for each in np.meshgrid(np.arange(self._layers), place, indexing="ij"))
+        number = layer * self._z.size + place
+        x = self._place(place, layer, 0.0)
+        at = np.flatnonzero(slab.cells(x, self._y[place], self._z[place]) >= 0)
+        return Particles(
+            at.size,
+            id=make_id(INLET, number[at]),
+            kind=INLET,
+            sample=number[at],
+            x=x[at],
+            y=self._y[place[at]],
+            z=self._z[place[at]],
+            u=self.speed[place[at]],
+        )
+
+    def _place(self, place, layer, ahead):
+        behind = (self.first[place] + layer + 0.5) * self._case.spacing
+        return self.x + self.travel[place] + ahead * self.speed[place] - behind
+
+    def find(self, p: Particles) -> None:
+        """Note where the samples are among the particles `p` of this rank."""
+        self._at = np.flatnonzero(p.kind == INLET)
+        self._of = p.sample[self._at] % self._z.size
+        self._behind = p.sample[self._at] // self._z.size
+
+    def place(self, p: Particles, ahead: float) -> None:
+        """Bring the samples among `p` to where they are `ahead` s from now."""
+        p.x[self._at] = self._place(self._of, self._behind, ahead)
+        p.u[self._at] = self.speed[self._of]
+
+    def advance(self, dt: float) -> None:
+        """Let all places travel over dt, s."""
+        self.travel += dt * self.speed
+
+    @property
+    def emitted(self) -> int:
+        """Particles that it has given to the water so far."""
+        return int(self.first.sum())
+
+    def kept(self) -> dict[str, np.ndarray]:
+        """What a restart needs."""
+        return {
+            "travel": self.travel.copy(),
+            "speed": self.speed.copy(),
+            "first": self.first.copy(),
+            "awake": self.awake.astype(np.int64),
+            "inlet": np.array([self.level, self.discharge]),
+        }
+
+    def restore(self, kept: dict[str, np.ndarray]) -> None:
+        """Go on from what `kept` returned."""
+        self.travel, self.speed, self.first = (np.array(kept[name]) for name in ("travel", "speed", "first"))
+        self.awake = np.array(kept["awake"], bool)
+        self.level, self.discharge = map(float, kept["inlet"])

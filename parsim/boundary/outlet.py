@@ -1,0 +1,123 @@
+"""Water that goes out: a zone beyond the side where it keeps the velocity that it came with, under given pressure.
+
+Beyond the side, over the depth of the support, the pressure is that of water at rest with the level there; the
+particles go on as they came, not backward, and are taken out at its end. So the water inside feels a level and nothing
+else. A wave from inside shows in the Riemann invariant V + 2 sqrt(g h) that runs out; the level gives way to it by so
+much that the one that runs in stays what it is on the average.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.case.course import at_time
+from parsim.case.fill import water_at
+from parsim.particles.state import FLUID
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from parsim.case.model import Case
+    from parsim.particles.state import Particles
+
+_TRAVELS = 5.0  # H / V, over which discharge and the outgoing invariant are averaged
+
+
+class Outlet:
+    """The outlet of a case at x_max. level, m: of the water beyond it now; discharge, m3/s (2D: m2/s), its mean.
+
+    removed: particles taken out so far; clipped, passed: times that a particle was kept from going back, and all.
+    """
+
+    def __init__(self, case: Case, layers: int) -> None:
+        self._side, self._case = case.box.faces.x_max, case
+        self.x = case.box.max[0]
+        self.end = self.x + layers * case.spacing
+        self._floor, self._gravity = case.box.min[2], -case.gravity[2]
+        self._width = 1.0 if case.dimensions == 2 else case.box.size[1]
+        self._head = case.water.density * self._gravity
+        self.discharge = self._invariant = math.nan
+        standing = water_at(case.water.fill, self.x - 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1]))
+        self.level = standing[1] if standing else self._floor
+        if self._side.level is not None:
+            self.level = at_time(self._side.level, case.start)
+        self.removed = 0
+        self._near = self._at = np.zeros(0, np.int64)
+        self._speed, self._true, self._real = np.zeros(0), np.zeros(0, bool), slice(0, 0)
+
+    def follow(self, depth: float, speed: float, time: float, dt: float) -> None:
+        """Set the level of the next step by what was seen inside over dt, s: mean depth, m, and speed, m/s."""
+        depth = max(depth, self._case.spacing) if math.isfinite(depth) else self._case.spacing
+        speed = speed if math.isfinite(speed) else 0.0
+        wave, flow = math.sqrt(self._gravity * depth), speed * depth * self._width
+        if math.isnan(self._invariant):
+            self._invariant, self.discharge = speed + 2.0 * wave, flow
+        lag = _TRAVELS * depth / max(abs(speed), 0.1 * wave)
+        share = min(dt / lag, 1.0)
+        self.discharge += share * (flow - self.discharge)
+        out = speed + 2.0 * wave
+        self._invariant += share * (out - self._invariant)
+        rise = 0.5 * self._side.absorb * (out - self._invariant) * math.sqrt(depth / self._gravity)
+        self.level = max(self._asked(time) + rise, self._floor)
+
+    def _asked(self, time):
+        """The level without waves, m."""
+        side = self._side
+        if side.level is not None:
+            return at_time(side.level, time)
+        flow = max(self.discharge, 0.0)
+        if side.rating is not None:
+            flows, levels = np.array(side.rating).T
+            return float(np.interp(flow, flows, levels))
+        wide = None if self._case.dimensions == 2 else self._width
+        return self._floor + normal_depth(flow, side.normal.manning, side.normal.slope, wide)
+
+    def find(self, p: Particles, own: slice) -> None:
+        """Note which of this rank's particles `p` may be in the zone before the lists are built anew."""
+        self._near = np.flatnonzero((p.kind == FLUID) & (p.x > self.x - 2.0 * self._case.spacing))
+        self._real = own
+
+    def hold(self, p: Particles, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> None:
+        """Give the water in the zone its pressure, and keep what velocity it has."""
+        at = self._at = self._near[p.x[self._near] > self.x]
+        p.p[at] = self._head * np.maximum(self.level - p.z[at], 0.0)
+        for name, values in at_rest(p.p[at]).items():
+            getattr(p, name)[at] = values
+        self._speed, self._true = p.u[at].copy(), p.image[at] == 0
+
+    def release(self, p: Particles) -> None:
+        """Give the water in the zone back the velocity that it had, downstream."""
+        at = self._at
+        p.u[at] = np.maximum(self._speed, 0.0)
+        p.v[at] = p.w[at] = 0.0
+
+    def turned(self) -> np.ndarray:
+        """Of this rank's water in the zone in the last step which was kept from going back: bool (n,)."""
+        own, at = self._real, self._at
+        return self._speed[(at >= own.start) & (at < own.stop) & self._true] < 0.0
+
+    def kept(self) -> dict[str, np.ndarray]:
+        """What a restart needs."""
+        return {"outlet": np.array([self.level, self.discharge, self._invariant, float(self.removed)])}
+
+    def restore(self, kept: dict[str, np.ndarray]) -> None:
+        """Go on from what `kept` returned."""
+        self.level, self.discharge, self._invariant, removed = map(float, kept["outlet"])
+        self.removed = int(removed)
+
+
+def normal_depth(discharge: float, manning: float, slope: float, width: float | None) -> float:
+    """Depth, m, of uniform flow by Manning in a rectangle of a width, m; of a wide channel per metre if None."""
+    wide = (manning * discharge / ((width or 1.0) * math.sqrt(slope))) ** 0.6
+    if width is None:
+        return wide
+    low, high = wide, 10.0 * wide + 1e-9
+    while high - low > 1e-9 * high:
+        depth = 0.5 * (low + high)
+        area = width * depth
+        flow = area * (area / (width + 2.0 * depth)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
+        low, high = (depth, high) if flow < discharge else (low, depth)
+    return 0.5 * (low + high)

@@ -1,0 +1,69 @@
+"""Quantities of a case that are constant or change with time: a number, rows of times and values, or a CSV file."""
+
+import csv
+import itertools
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from parsim.case.types import Number
+from parsim.errors import InputError
+
+Rows = Annotated[tuple[tuple[Number, Number], ...], Field(min_length=2)]
+Course = Number | Rows  # rows of time, s, and value: straight in between, constant before and after
+
+
+def at_time(course, time):
+    """The value of a `Course` at a time, s."""
+    if isinstance(course, float):
+        return course
+    times, values = np.array(course).T
+    return float(np.interp(time, times, values))
+
+
+def largest(course):
+    """The largest value of a `Course`, without its sign."""
+    return abs(course) if isinstance(course, float) else max(abs(value) for _, value in course)
+
+
+def wrong_course(key, course):
+    """What is wrong with a quantity that changes with time: messages."""
+    if isinstance(course, float):
+        return []
+    return [
+        f"{key}: time {later:g} after {earlier:g} s: times must grow from row to row"
+        for (earlier, _), (later, _) in itertools.pairwise(course)
+        if later <= earlier
+    ][:1]
+
+
+def read_courses(table, folder, key):
+    """Put in place of every {file = "x.csv"} in a table of a case file the rows of that file, found from `folder`."""
+    for name, value in table.items():
+        if isinstance(value, dict) and set(value) == {"file"} and isinstance(value["file"], str):
+            table[name] = _rows(folder / value["file"], f"{key}.{name}")
+
+
+def _rows(path, key):
+    """Rows [time, value] of a CSV file; lines that begin with # and a first line of names are passed over."""
+    if path.suffix.lower() != ".csv":
+        raise InputError(f'{key}.file = "{path}": must be a CSV file of two columns, time, s, and value')
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            lines = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f'{key}.file = "{path}": cannot be read: {reason}') from None
+    rows = []
+    for number, row in enumerate(lines):
+        try:
+            time, value = map(float, row)
+        except ValueError:
+            if number == 0:
+                continue  # names of the columns
+            raise InputError(f'{key}.file = "{path}": row {number + 1}, {",".join(row)}: must be two numbers') from None
+        rows.append([time, value])
+    if len(rows) < 2:
+        raise InputError(f'{key}.file = "{path}": has {len(rows)} rows of numbers; must be two or more')
+    return rows

@@ -1,0 +1,83 @@
+"""What may be wrong with inlet and outlet of a case."""
+
+import itertools
+
+import numpy as np
+
+from parsim.case.course import at_time, largest, wrong_course
+from parsim.case.fill import water_at
+from parsim.geometry.faces import SIDES
+
+_PLACE = {"inlet": "x_min", "outlet": "x_max"}
+
+
+def faults(case):
+    """What is wrong with inlet and outlet of a completed case: messages."""
+    found, faces = [], case.box.faces
+    for name in itertools.chain(*SIDES):
+        kind = getattr(faces, name).kind
+        if _PLACE.get(kind, name) != name:
+            found.append(f'box.faces.{name} = "{kind}": must be {_PLACE[kind]}; the water flows along x')
+        elif kind in _PLACE and not (case.water.scheme.WET and case.water.fill):
+            found.append(f'box.faces.{name} = "{kind}": there is no water, water.fill, to begin with')
+        elif kind in _PLACE:
+            found += [f"box.faces.{name}.{text}" for text in {"inlet": _inlet, "outlet": _outlet}[kind](case)]
+    return found
+
+
+def _inlet(case):
+    side, middle = case.box.faces.x_min, 0.5 * (case.box.min[1] + case.box.max[1])
+    standing = water_at(case.water.fill, case.box.min[0], middle)
+    if standing is None:
+        yield f"kind: no fill reaches the inlet, x = {case.box.min[0]!r} m; the water must begin there"
+        return
+    for key in ("discharge", "level"):
+        course = getattr(side, key)
+        if course is not None:
+            yield from wrong_course(key, course)
+            if _lowest(course) < 0.0 and key == "discharge":
+                yield f"discharge = {_lowest(course):g}: must be 0 or more; it flows in"
+    level = standing[1] if side.level is None else at_time(side.level, 0.0)
+    if side.level is not None and _lowest(side.level) <= case.box.min[2] + case.spacing:
+        yield f"level = {_lowest(side.level):g}: must be more than a spacing above the floor, {case.box.min[2]!r} m"
+        return
+    depth = level - case.box.min[2]
+    width = 1.0 if case.dimensions == 2 else case.box.size[1]
+    mean = largest(side.discharge) / (depth * width)
+    if mean > case.speed:
+        yield (
+            f"discharge = {largest(side.discharge):g}: is {mean:.4g} m/s through {depth * width:.4g} m2, more than the "
+            f"largest expected speed, {case.speed:.4g} m/s; give water.speed"
+        )
+    if side.profile is not None:
+        yield from (f"profile.{text}" for text in side.profile.faults(depth))
+
+
+def _outlet(case):
+    side = case.box.faces.x_max
+    given = [key for key in ("level", "rating", "normal") if getattr(side, key) is not None]
+    if len(given) != 1:
+        told = " and ".join(given) or "none"
+        yield f"level, rating, normal: {told} given; must be exactly one"
+        return
+    floor, top = case.box.min[2], case.box.max[2]
+    if side.level is not None:
+        yield from wrong_course("level", side.level)
+        low, high = _lowest(side.level), largest(side.level)
+        if low <= floor:
+            yield f"level = {low:g}: must be above the floor, {floor!r} m"
+        if high > top:
+            yield f"level = {high:g}: must be below the top of the box, {top!r} m"
+    if side.rating is not None:
+        rows = np.array(side.rating)
+        for column, name in enumerate(("discharge", "level")):
+            fall = np.flatnonzero(np.diff(rows[:, column]) <= 0.0)
+            if fall.size:
+                low, high = rows[fall[0] : fall[0] + 2, column]
+                yield f"rating: {name} {high:g} after {low:g}: must grow from row to row"
+        if rows[:, 1].min() <= floor:
+            yield f"rating: level {rows[:, 1].min():g} m: must be above the floor, {floor!r} m"
+
+
+def _lowest(course):
+    return course if isinstance(course, float) else min(value for _, value in course)

@@ -1,0 +1,115 @@
+"""Where water comes in and goes out of a box: what they see of the water inside, and their account."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.boundary.inlet import Inlet
+from parsim.boundary.outlet import Outlet
+from parsim.case.scales import scales
+from parsim.particles.state import DETACHED, Particles
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from parsim.case.model import Case
+    from parsim.fluid.scheme import Flow
+
+_NEAR, _FAR = 0.5, 1.5  # depths inside, between which the water is looked at
+_INSIDE, _OUTSIDE, _BACK = 0, 1, 2  # rows of the sums: at the inlet, at the outlet, what was kept from going back
+
+
+class Openings:
+    """Inlet at x_min and outlet at x_max of a case, each None where the side is another; exact account of particles.
+
+    clipped: share of the water beyond the outlet that was kept from going back, its mean so far.
+    """
+
+    def __init__(self, case: Case, layers: int) -> None:
+        faces, scale = case.box.faces, scales(case)
+        self.inlet = Inlet(case, layers) if faces.x_min.kind == "inlet" else None
+        self.outlet = Outlet(case, layers) if faces.x_max.kind == "outlet" else None
+        self._depth, self._floor = case.depth, case.box.min[2]
+        self._head = case.water.density * -case.gravity[2]
+        self._units = np.array([scale.length, scale.length / scale.time, 1.0])
+        self._back = np.zeros(2)
+
+    def __bool__(self) -> bool:
+        return self.inlet is not None or self.outlet is not None
+
+    @property
+    def clipped(self) -> float:
+        """See the class."""
+        back, every = self._back
+        return float(back / every) if every else 0.0
+
+    def look(self, flow: Flow, time: float, dt: float) -> None:
+        """Look at the water inside after a step of dt, s; `time`, s, is when the next begins."""
+        p, own, level = flow.particles, flow.near.fluid, np.full(2, np.nan)
+        values, rows = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
+        for row, place in ((_INSIDE, self.inlet and self.inlet.x), (_OUTSIDE, self.outlet and self.outlet.x)):
+            if place is None:
+                continue
+            away = (p.x[own] - place) * (1.0 if row == _INSIDE else -1.0)
+            at = own[(away > _NEAR * self._depth) & (away < _FAR * self._depth) & (p.surface[own] != DETACHED)]
+            values.append(np.stack([p.z[at] + p.p[at] / self._head, p.u[at], np.ones(at.size)], axis=1))
+            rows.append(np.full(at.size, row))
+        if self.outlet:
+            turned = self.outlet.turned().astype(float)
+            values.append(np.stack([turned, np.zeros(turned.size), np.ones(turned.size)], axis=1))
+            rows.append(np.full(turned.size, _BACK))
+        sums = flow.domain.sum(np.concatenate(values), self._units, np.concatenate(rows), 3)
+        with np.errstate(invalid="ignore"):
+            level, speed = sums[:, 0] / sums[:, 2], sums[:, 1] / sums[:, 2]
+        self._back += sums[_BACK, [0, 2]]
+        if self.inlet:
+            self.inlet.follow(float(level[_INSIDE]), time, dt)
+        if self.outlet:
+            self.outlet.follow(float(level[_OUTSIDE]) - self._floor, float(speed[_OUTSIDE]), time, dt)
+
+    def emit(self, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> Particles | None:
+        """The water that has come in since it was asked last, the same on all ranks; None without an inlet."""
+        return self.inlet.emit(at_rest) if self.inlet else None
+
+    def taken(self, fluid: Particles) -> np.ndarray:
+        """Which of the water has come to the end of the zone beyond the outlet: bool (n,)."""
+        return fluid.x >= self.outlet.end if self.outlet else np.zeros(len(fluid), bool)
+
+    def find(self, p: Particles, own: slice) -> None:
+        """Note where samples and zone are among the particles `p` after a rebuild; `own` are those of this rank."""
+        if self.inlet:
+            self.inlet.find(p)
+        if self.outlet:
+            self.outlet.find(p, own)
+
+    @property
+    def speed(self) -> float:
+        """Of the fastest water that comes in, m/s."""
+        return float(self.inlet.speed.max()) if self.inlet else 0.0
+
+    def place(self, p: Particles, ahead: float) -> None:
+        """Bring the samples of the inlet to where they are `ahead` s from now."""
+        if self.inlet:
+            self.inlet.place(p, ahead)
+
+    def advance(self, p: Particles, dt: float) -> None:
+        """Let the inlet travel over dt, s, and place its samples."""
+        if self.inlet:
+            self.inlet.advance(dt)
+            self.inlet.place(p, 0.0)
+
+    def kept(self) -> dict[str, np.ndarray]:
+        """What a restart needs."""
+        kept = {"back": self._back.copy()}
+        for each in (self.inlet, self.outlet):
+            kept |= each.kept() if each else {}
+        return kept
+
+    def restore(self, kept: dict[str, np.ndarray]) -> None:
+        """Go on from what `kept` returned."""
+        self._back = np.array(kept["back"], float)
+        for each in (self.inlet, self.outlet):
+            if each:
+                each.restore(kept)

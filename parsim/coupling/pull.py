@@ -1,0 +1,67 @@
+"""What pulls water and bodies alike: gravity, and along a channel that repeats the force that keeps its discharge."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.case.course import at_time
+from parsim.case.scales import gravity_at, scales
+
+if TYPE_CHECKING:
+    from parsim.case.model import Case
+    from parsim.fluid.scheme import Flow
+    from parsim.solid.bodies import Bodies
+
+_INTEGRAL = 4.0  # times of relaxation in which the integral part acts: it then answers without swinging
+
+
+class Pull:
+    """Acceleration of all that is free, m/s2, at a time.
+
+    discharge, m3/s, of the water through the channel at the last step, mean over its length; drive, m/s2, what is added
+    to gravity along x: a controller with a proportional and an integral part in exact sums, the same on all ranks;
+    work, J, done so far along x in a channel.
+    """
+
+    def __init__(self, case: Case) -> None:
+        self._case, self._channel = case, case.channel
+        self.discharge, self.drive, self.work, self._integral = np.nan, 0.0, 0.0, 0.0
+        scale = scales(case)
+        self._units = np.array([scale.length / scale.time, 1.0])
+
+    def __bool__(self) -> bool:
+        return self._channel is not None
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        """Acceleration along x, y, z, m/s2."""
+        x, y, z = gravity_at(self._case, time)
+        return x + self.drive, y, z
+
+    def steer(self, flow: Flow, bodies: Bodies, volume: float, time: float, dt: float) -> None:
+        """Set the drive of the step that begins at `time`, s; `volume` of a particle, m3. Not while it settles."""
+        if self._channel is None or time < 0.0:
+            return
+        p, at = flow.particles, flow.near.fluid
+        sums = flow.domain.sum(np.stack([p.u[at], np.ones(at.size)], axis=1), self._units)
+        speed, number = sums.tolist()
+        if number == 0.0:
+            self.discharge, self.drive = 0.0, 0.0
+            return
+        length = self._case.box.size[0]
+        self.discharge = speed * volume / length
+        lag = (at_time(self._channel.discharge, time) - self.discharge) * length / (number * volume)  # m/s
+        self.drive = lag / self._channel.relaxation + self._integral
+        pulled = self._case.water.density * speed * volume  # kg m/s
+        pulled += float((bodies.mass * bodies.velocity[:, 0])[~(bodies.held(time) | bodies.gone)].sum())
+        self.work += dt * pulled * self.at(time)[0]
+        self._integral += dt * lag / (_INTEGRAL * self._channel.relaxation * self._channel.relaxation)
+
+    def kept(self) -> dict[str, np.ndarray]:
+        """What a restart needs."""
+        return {"drive": np.array([self.discharge, self.drive, self.work, self._integral])}
+
+    def restore(self, kept: dict[str, np.ndarray]) -> None:
+        """Go on from what `kept` returned."""
+        self.discharge, self.drive, self.work, self._integral = map(float, kept["drive"])
