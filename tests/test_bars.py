@@ -102,7 +102,9 @@ def test_results_are_kept_and_brought_up_to_date(tmp_path):
 def test_the_page_shows_every_case_and_its_pictures(tmp_path):
     fake_run.make(tmp_path / "case-one", times=(0.0, 0.4), spacing=0.03)
     rows = [runs.judged(BAR, 1.02, number(1.0, model=1.1)), runs.judged(BAR, None, None) | {"case": "case/two"}]
-    text = write(tmp_path, rows).read_text()
+    curve = {"series": "bodies", "column": "z", "curve": [[0.0, 1.0], [0.4, 0.9]]}
+    bars = [BAR, Bar("case/one", "quick", "fall", "off_curve", 0.1, True, curve)]
+    text = write(tmp_path, rows, bars).read_text()
     assert "0 of 2 bars met" in text and text.count("MISSED") == 2 and "The run failed." in text
-    assert text.count("<img") >= 2 and 'href="case-one/report/index.html"' in text
+    assert text.count("<img") >= 3 and "curves of case/one" in text and 'href="case-one/report/index.html"' in text
     assert (tmp_path / "case-one" / "report" / "index.html").is_file()

@@ -35,7 +35,7 @@ def validate(
     if record:
         note(record, rows)
     if out:
-        told = write(out, rows)
+        told = write(out, rows, [bar for each in held.values() for bar in each])
         if not as_json:
             print(f"page: {told}")
     if as_json:
