@@ -46,7 +46,9 @@ class Openings:
         return float(back / every) if every else 0.0
 
     def look(self, flow: Flow, time: float, dt: float) -> None:
-        """Look at the water inside after a step of dt, s; `time`, s, is when the next begins."""
+        """Look at the water inside after a step of dt, s; `time`, s, is when the next begins. Not while it settles."""
+        if time < 0.0:
+            return
         p, own, level = flow.particles, flow.near.fluid, np.full(2, np.nan)
         values, rows = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
         for row, place in ((_INSIDE, self.inlet and self.inlet.x), (_OUTSIDE, self.outlet and self.outlet.x)):
