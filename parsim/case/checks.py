@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from parsim.case import bodies, friction, places, repeats
+from parsim.case import bodies, friction, measure, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -27,7 +27,8 @@ def checked(case, messages):
         bodies.gate,
         bodies.sensors,
     )
-    for check in (_spacing, _box, _faces, _water, fills.faults, friction.faults, _speed, _ramp, *of_bodies):
+    of_tables = fills.faults, friction.faults, measure.faults
+    for check in (_spacing, _box, _faces, _water, *of_tables, _speed, _ramp, *of_bodies):
         faults += check(case)
     if messages or faults:
         raise InputError([*messages, *faults])
