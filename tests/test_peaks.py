@@ -1,0 +1,137 @@
+"""What acts on bodies between rows: nothing is lost, over rows, checkpoints and restarts."""
+
+import shutil
+
+import numpy as np
+import pytest
+from flows import GRAVITY, WOOD, simulation, tank
+
+import parsim
+from parsim.__main__ import main
+from parsim.case.model import parse
+from parsim.errors import InputError
+from parsim.observe.peaks import Peaks
+from parsim.river import piers
+
+# a ball of 2 kg that meets a pier of 0.4 m at 1 m/s, 0.15 m over its foot, and comes back
+CASE = """
+dimensions = 3
+gravity = [0.0, 0.0, 0.0]
+box = {max = [1.0, 0.4, 0.4]}
+run = {until = 0.3}
+output = {series = 0.05, milestones = 0.1, sensors = [{kind = "load", name = "all"}, {kind = "load", name = "ball", body = "ball"}]}
+[contacts]
+law = {kind = "spring", stiffness = 2e5}
+[materials.ice]
+young = 1e8
+poisson = 0.3
+friction = 0.0
+restitution = 0.5
+[[bodies]]
+name = "pier"
+shape = {size = [0.1, 0.1, 0.4]}
+density = 2000.0
+position = [0.7, 0.2, 0.2]
+material = "ice"
+fixed = true
+[[bodies]]
+name = "ball"
+shape = {kind = "sphere", diameter = 0.1}
+mass = 2.0
+position = [0.47, 0.2, 0.15]
+velocity = [1.0, 0.0, 0.0]
+material = "ice"
+"""
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("peaks")
+    (folder / "case.toml").write_text(CASE)
+    assert main(["run", str(folder / "case.toml"), "-o", str(folder / "out")]) == 0
+    return folder / "out"
+
+
+def of(run, body, kind="contact"):
+    series = run.series("peaks")
+    return {name: values[(series["body"] == body) & (series["kind"] == kind)] for name, values in series.items()}
+
+
+def test_a_hit_gives_its_impulse_and_its_peak(out):
+    """Impulse m v (1 + e); the peak of a spring is that of a half wave at least, and falls in no row of the loads."""
+    run = parsim.open(out)
+    pier = of(run, "pier")
+    speed = run.series("bodies")["u"][-1]
+    assert speed == pytest.approx(-0.5, rel=0.02)
+    assert pier["fx_impulse"].sum() == pytest.approx(2.0 * (1.0 - speed), rel=1e-9)
+    assert pier["fx_impulse"] == pytest.approx(pier["fx_mean"] * pier["span"], rel=1e-12)
+    assert pier["span"].sum() == pytest.approx(pier["time"][-1], rel=1e-12)
+    loads = run.series("loads")
+    written = loads["fx"][(loads["body"] == "pier") & (loads["kind"] == "contact")]
+    most = pier["fx_max"].max()
+    assert most > 0.5 * 1.0 * np.sqrt(2e5 * 2.0) and written.max() < 0.5 * most
+    assert piers.percentiles(piers.Peaks(*(pier[n] for n in (
+        "time", "span", "fx_impulse", "fx_min", "fx_max"))), (0.0,))[0, 0] == most  # fmt: skip
+
+
+def test_moments_are_about_the_foot(out):
+    pier = of(parsim.open(out), "pier")
+    assert pier["my_max"] == pytest.approx(0.15 * pier["fx_max"], rel=1e-9, abs=1e-9)
+    assert pier["my_impulse"].sum() == pytest.approx(0.15 * pier["fx_impulse"].sum(), rel=1e-9)
+
+
+def test_a_sensor_takes_the_fixed_bodies_or_the_one_it_names(out):
+    run = parsim.open(out)
+    series = run.series("peaks")
+    seen = set(zip(series["sensor"].tolist(), series["body"].tolist(), series["kind"].tolist(), strict=True))
+    assert seen == {(*who, kind) for who in (("all", "pier"), ("ball", "ball")) for kind in ("water", "contact")}
+    assert of(run, "ball")["fx_impulse"].sum() == pytest.approx(-of(run, "pier")["fx_impulse"].sum(), rel=1e-9)
+    assert run.units("peaks")["my_impulse"] == "N m s" and run.units("peaks")["fx_max"] == "N"
+
+
+def test_a_restart_between_two_rows_loses_nothing(out, tmp_path, capsys):
+    """From a checkpoint that lies between two rows, with sums and extremes of the steps before it."""
+    shutil.copytree(out, tmp_path / "again")
+    places = sorted((tmp_path / "again" / "checkpoints").glob("*.h5"))
+    kept = next(path for path in places if path.name.startswith("milestone"))
+    for path in places:
+        if path != kept:
+            path.unlink()
+    assert main(["resume", str(tmp_path / "again"), "--until", "0.31"]) == 0
+    first = tmp_path / "straight"
+    case = tmp_path / "case.toml"
+    case.write_text(CASE.replace("until = 0.3", "until = 0.31"))
+    assert main(["run", str(case), "-o", str(first)]) == 0
+    assert main(["compare", str(first), str(tmp_path / "again")]) == 0, capsys.readouterr().out
+
+
+def test_what_is_kept_is_what_goes_on():
+    """Two observers, one of which is put away and taken up between two steps, tell the same."""
+    raft = {"name": "raft", "shape": {"size": [0.08, 1.0, 0.04]}, "density": 500.0, "material": "wood",
+            "position": [0.2, 0.5, 0.08], "fixed": True}  # fmt: skip
+    sensor = {"kind": "load", "name": "a"}
+    s = simulation(tank(0.4, 0.2, 0.02, fill=(0.4, 0.1)), output={"sensors": [sensor]}, materials=WOOD, bodies=[raft])
+    one, other = Peaks(s.case), Peaks(s.case)
+    assert one.rows(s) == []
+    for _ in range(4):
+        s.step()
+        one.see(s)
+        other.see(s)
+        kept, other = other.kept(), Peaks(s.case)
+        other.restore(kept)
+    rows = one.rows(s)
+    assert rows == other.rows(s) and one.rows(s) == []
+    (_, name, kind, span, *values), contact = rows
+    assert (name, kind) == ("raft", "water") and span == pytest.approx(s.time) and not any(contact[4:])
+    lift = values[2]
+    assert lift == pytest.approx(1000.0 * GRAVITY * 0.08 * 0.04, rel=0.2)
+    assert values[6 + 2] <= lift <= values[12 + 2] and values[18 + 2] == pytest.approx(lift * span)
+
+
+def test_a_body_that_is_not_there_is_refused():
+    data = tank(0.4, 0.2, 0.02, fill=(0.4, 0.1)) | {"output": {"sensors": [
+        {"kind": "load", "name": "a", "body": "pire"}]}}  # fmt: skip
+    with pytest.raises(InputError, match='output.sensors.a.body = "pire": no such body; allowed: none'):
+        parse(data)
+    fixed = simulation(tank(0.4, 0.2, 0.02, fill=(0.4, 0.1)), output={"sensors": [{"kind": "load", "name": "a"}]})
+    assert Peaks(fixed.case).rows(fixed) == [], "nothing is fixed"
