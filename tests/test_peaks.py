@@ -1,10 +1,11 @@
 """What acts on bodies between rows: nothing is lost, over rows, checkpoints and restarts."""
 
+import json
 import shutil
+import tomllib
 
 import numpy as np
 import pytest
-from flows import GRAVITY, WOOD, simulation, tank
 
 import parsim
 from parsim.__main__ import main
@@ -19,7 +20,10 @@ dimensions = 3
 gravity = [0.0, 0.0, 0.0]
 box = {max = [1.0, 0.4, 0.4]}
 run = {until = 0.3}
-output = {series = 0.05, milestones = 0.1, sensors = [{kind = "load", name = "all"}, {kind = "load", name = "ball", body = "ball"}]}
+[output]
+series = 0.05
+milestones = 0.1
+sensors = [{kind = "load", name = "all"}, {kind = "load", name = "ball", body = "ball"}]
 [contacts]
 law = {kind = "spring", stiffness = 2e5}
 [materials.ice]
@@ -105,33 +109,59 @@ def test_a_restart_between_two_rows_loses_nothing(out, tmp_path, capsys):
     assert main(["compare", str(first), str(tmp_path / "again")]) == 0, capsys.readouterr().out
 
 
-def test_what_is_kept_is_what_goes_on():
-    """Two observers, one of which is put away and taken up between two steps, tell the same."""
-    raft = {"name": "raft", "shape": {"size": [0.08, 1.0, 0.04]}, "density": 500.0, "material": "wood",
-            "position": [0.2, 0.5, 0.08], "fixed": True}  # fmt: skip
-    sensor = {"kind": "load", "name": "a"}
-    s = simulation(tank(0.4, 0.2, 0.02, fill=(0.4, 0.1)), output={"sensors": [sensor]}, materials=WOOD, bodies=[raft])
-    one, other = Peaks(s.case), Peaks(s.case)
-    assert one.rows(s) == []
-    for _ in range(4):
-        s.step()
-        one.see(s)
-        other.see(s)
-        kept, other = other.kept(), Peaks(s.case)
-        other.restore(kept)
-    rows = one.rows(s)
-    assert rows == other.rows(s) and one.rows(s) == []
-    (_, name, kind, span, *values), contact = rows
-    assert (name, kind) == ("raft", "water") and span == pytest.approx(s.time) and not any(contact[4:])
-    lift = values[2]
-    assert lift == pytest.approx(1000.0 * GRAVITY * 0.08 * 0.04, rel=0.2)
-    assert values[6 + 2] <= lift <= values[12 + 2] and values[18 + 2] == pytest.approx(lift * span)
+class Drawn:
+    """A simulation whose bodies are pushed at random."""
+
+    def __init__(self, bodies):
+        self.dice, self.bodies, self.step_count, self.dt = np.random.default_rng(7), self, 0, 0.0
+        self.names, self.made = [body.name for body in bodies], []
+
+    def step(self):
+        self.step_count, self.dt = self.step_count + 1, self.dice.uniform(0.001, 0.002)
+        self.load = {kind: self.dice.normal(5.0, 20.0, (len(self.names), 6)) for kind in ("water", "contact")}
+        self.made.append((self.dt, self.load))
+
+    def shown(self, name):
+        return self.load[name.removesuffix("_load")].copy()
 
 
-def test_a_body_that_is_not_there_is_refused():
-    data = tank(0.4, 0.2, 0.02, fill=(0.4, 0.1)) | {"output": {"sensors": [
-        {"kind": "load", "name": "a", "body": "pire"}]}}  # fmt: skip
-    with pytest.raises(InputError, match='output.sensors.a.body = "pire": no such body; allowed: none'):
+def test_rows_are_of_all_steps_and_what_is_kept_goes_on():
+    """Two observers, one of which is put away as JSON and taken up after every step, tell the same, and the truth."""
+    case = parse(tomllib.loads(CASE))
+    one, other, s = Peaks(case), Peaks(case), Drawn(case.bodies)
+    one.see(s)
+    assert one.rows(s) == [], "before the first step there is nothing to tell"
+    for _ in range(3):
+        s.made.clear()
+        for _ in range(5):
+            s.step()
+            one.see(s)
+            other.see(s)
+            kept, other = json.loads(json.dumps(other.kept())), Peaks(case)
+            other.restore(kept)
+        rows = one.rows(s)
+        assert rows == other.rows(s) and one.rows(s) == []
+        assert [row[:3] for row in rows] == [[*who, kind] for who in (("all", "pier"), ("ball", "ball"))
+                                             for kind in ("water", "contact")]  # fmt: skip
+        dt = np.array([dt for dt, _ in s.made])
+        water = np.array([load["water"][0] for _, load in s.made])
+        water[:, 3] -= 0.2 * water[:, 1]  # the foot of the pier is 0.2 m under its centre
+        water[:, 4] += 0.2 * water[:, 0]
+        mean, least, largest, impulse = np.array(rows[0][4:]).reshape(4, 6)
+        assert rows[0][3] == pytest.approx(dt.sum(), rel=1e-12)
+        assert impulse == pytest.approx(dt @ water, rel=1e-12) and mean == pytest.approx(impulse / dt.sum(), rel=1e-12)
+        assert (least == water.min(axis=0)).all() and (largest == water.max(axis=0)).all()
+
+
+def test_a_body_that_is_not_there_is_refused_and_one_that_is_not_fixed_left_out():
+    data = tomllib.loads(CASE)
+    data["output"]["sensors"] = [{"kind": "load", "name": "a", "body": "pire"}]
+    with pytest.raises(InputError, match='output.sensors.a.body = "pire": no such body; .*did you mean pier?'):
         parse(data)
-    fixed = simulation(tank(0.4, 0.2, 0.02, fill=(0.4, 0.1)), output={"sensors": [{"kind": "load", "name": "a"}]})
-    assert Peaks(fixed.case).rows(fixed) == [], "nothing is fixed"
+    data["output"]["sensors"] = [{"kind": "load", "name": "a"}]
+    data["bodies"][0]["fixed"] = False
+    case = parse(data)
+    s, peaks = Drawn(case.bodies), Peaks(case)
+    s.step()
+    peaks.see(s)
+    assert peaks.rows(s) == []

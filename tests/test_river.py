@@ -175,16 +175,16 @@ def test_heads_fall_by_what_friction_takes():
     energy = head(level, speed, 9.81)
     assert energy == pytest.approx(0.2 + 0.49 / 19.62)
     assert energy_slope(x, energy, 0.002) == pytest.approx(0.002)
-    assert head_loss(x, energy, 2.0, 7.0, 0.002) == pytest.approx(0.01)
+    assert head_loss(x, energy, ((2.0, 7.0)), 0.002) == pytest.approx(0.01)
     falling = head(level - 0.001 * x, speed, 9.81)
     assert energy_slope(x, falling, 0.002) == pytest.approx(0.003)
-    assert head_loss(x, falling, 2.0, 7.0) == pytest.approx(0.005)
+    assert head_loss(x, falling, (2.0, 7.0)) == pytest.approx(0.005)
     step = head(np.where(x < 5.0, 0.22, 0.2), speed, 9.81)
-    assert head_loss(x, step, 2.0, 7.0) == pytest.approx(0.02)
+    assert head_loss(x, step, (2.0, 7.0)) == pytest.approx(0.02)
     step[50] = np.nan
-    assert head_loss(x, step, 2.0, 7.0) == pytest.approx(0.02)
+    assert head_loss(x, step, (2.0, 7.0)) == pytest.approx(0.02)
     nothing = np.full(100, np.nan)
-    assert math.isnan(head_loss(x, nothing, 2.0, 7.0)) and math.isnan(energy_slope(x, nothing))
+    assert math.isnan(head_loss(x, nothing, (2.0, 7.0))) and math.isnan(energy_slope(x, nothing))
 
 
 def test_the_window_of_levels_is_five_times_that_of_a_depth():

@@ -51,7 +51,7 @@ def stood(*spans, supply=0.1, speed=0.5):
     """Passed volume and mean speed of ice that stands in the spans of TIMES and drifts in all others."""
     moves = np.ones(len(TIMES))
     for begin, end in spans:
-        moves[(TIMES >= begin - 1e-9) & (TIMES <= end + 1e-9)] = 0.0
+        moves[np.abs(TIMES - 0.5 * (begin + end)) <= 0.5 * (end - begin) + 1e-9] = 0.0
     through = np.concatenate([[0.0], np.cumsum(np.diff(TIMES) * supply * 0.5 * (moves[1:] + moves[:-1]))])
     return through, speed * moves
 
@@ -74,6 +74,7 @@ def test_what_is_no_jam():
     assert jam(TIMES, 0.006 * TIMES, speed, 0.1, 0.5, 5.0) is None, "it leaks"
     assert jam(TIMES, through, np.where(speed > 0.0, speed, np.nan), 0.1, 0.5, 5.0) is None, "there is no ice"
     assert jam(TIMES[:20], through[:20], 0.0 * speed[:20], 0.1, 0.5, 5.0) is None, "the run is shorter"
+    assert jam(TIMES, through, 0.0 * speed, 0.1, 0.0, math.inf) is None, "nothing flows"
 
 
 def test_ice_that_leaves_the_reach_empty_for_a_moment_only_interrupts_a_jam():

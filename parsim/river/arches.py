@@ -114,7 +114,7 @@ def neighbours(
         with np.errstate(invalid="ignore"):
             shift = np.where(np.isfinite(period), -np.rint(away / period) * period, 0.0)
         near = (np.abs(away + shift) <= half[one + 1 :] + half[one] + reach).all(axis=1)
-        for k in np.flatnonzero(near):
+        for k in np.flatnonzero(near).tolist():
             if gap(outlines[one], outlines[one + 1 + k] + shift[k]) <= reach:
-                pairs.append((one, int(one + 1 + k)))
+                pairs.append((one, one + 1 + k))
     return pairs

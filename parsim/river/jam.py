@@ -34,6 +34,8 @@ def jam(
     times (T,), s; passed (T,), m3, through the control plane so far; speed (T,), m/s, mean of the ice over the reach
     upstream of it, NaN where there is none; supply, m3/s, of ice; water, m/s, its speed; length, s: see `window`.
     """
+    if not np.isfinite(length):
+        return None
     stands = _stands(times, passed, speed, supply, water, length)
     if not stands.any():
         return None

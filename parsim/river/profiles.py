@@ -40,16 +40,16 @@ def head(level: np.ndarray, velocity: np.ndarray, gravity: float) -> np.ndarray:
     return level + velocity**2 / (2.0 * gravity)
 
 
-def head_loss(x: np.ndarray, heads: np.ndarray, begin: float, end: float, tilt: float = 0.0) -> float:
-    """Head lost, m, from one place to another, m, of heads (nx,) at x (nx,), m.
+def head_loss(x: np.ndarray, heads: np.ndarray, between: tuple[float, float], tilt: float = 0.0) -> float:
+    """Head lost, m, between two places, m, the first one upstream, of heads (nx,) at x (nx,), m.
 
     `tilt`: what drives the flow along x over gravity along z, the slope of a tilted channel.
     """
     there = np.isfinite(heads)
     if not there.any():
         return float("nan")
-    first, last = np.interp([begin, end], x[there], heads[there])
-    return float(first - last + tilt * (end - begin))
+    first, last = np.interp(between, x[there], heads[there])
+    return float(first - last + tilt * (between[1] - between[0]))
 
 
 def energy_slope(x: np.ndarray, heads: np.ndarray, tilt: float = 0.0) -> float:
