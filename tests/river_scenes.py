@@ -21,11 +21,12 @@ def sphere(diameter):
 
 
 def surfaces(*bodies):
-    """Points, quads and owner of the faces of bodies: (shape, place) or (shape, place, angles, degrees) each."""
+    """Points, quads and owner of the faces of bodies: (shape, place), or besides angles (3,), degrees, or a quaternion."""
     points, quads, owners, first = [], [], [], 0
-    for b, (shape, place, *angles) in enumerate(bodies):
+    for b, (shape, place, *turns) in enumerate(bodies):
         corners, faces = shape.surface()
-        (turn,) = matrices(from_angles(angles[0] if angles else (0.0, 0.0, 0.0))[None])
+        turn = np.array(turns[0] if turns else (0.0, 0.0, 0.0))
+        (turn,) = matrices((turn if len(turn) == 4 else from_angles(turn))[None])
         points.append(corners @ turn.T + place)
         quads.append(faces + first)
         owners.append(np.full(len(faces), b))
