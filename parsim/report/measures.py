@@ -62,7 +62,7 @@ class Published:
 
 
 def published(run: Run) -> list[Published]:
-    """The rows of reference.csv that are about this case."""
+    """The rows of reference.csv that are about this case; their first column names one or more, apart by spaces."""
     path = run.folder / "reference.csv"
     if not path.is_file():
         return []
@@ -80,7 +80,7 @@ def published(run: Run) -> list[Published]:
             source=row["source"],
         )
         for row in rows
-        if row["case"] == run.info.get("case_name")
+        if run.info.get("case_name") in row["case"].split()
     ]
 
 

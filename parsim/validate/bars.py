@@ -1,4 +1,7 @@
-"""What each example case is held to: `_bars.toml` beside it, its numbers in `reference.csv`."""
+"""What each example case is held to: `_bars.toml` beside it, its numbers in `reference.csv`.
+
+A case in `_bars.toml` has a level and `bars`, or the name of the case whose bars it has too: `like = "10_rows"`.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +69,7 @@ def _read(file: Path) -> Iterator[Bar]:
     with file.open("rb") as opened:
         cases = tomllib.load(opened)
     for stem, table in cases.items():
-        for row in table["bars"]:
+        for row in cases[table["like"]]["bars"] if "like" in table else table["bars"]:
             given = dict(row)
             if given.get("measure") not in MEASURES:
                 likely = suggestion(nearest(str(given.get("measure")), MEASURES))
