@@ -21,7 +21,7 @@ def sphere(diameter):
 
 
 def surfaces(*bodies):
-    """Points, quads and owner of the faces of bodies: (shape, place), or besides angles (3,), degrees, or a quaternion."""
+    """Points, quads and owner of the faces of bodies: (shape, place), or with angles, degrees, or a quaternion."""
     points, quads, owners, first = [], [], [], 0
     for b, (shape, place, *turns) in enumerate(bodies):
         corners, faces = shape.surface()

@@ -28,7 +28,7 @@ def plan(river: River, time: float) -> Figure | None:
         return None
     low, high = river.case.box.min, river.case.box.max
     shape = (high[1] - low[1]) / (high[0] - low[0])
-    drawn = Figure(figsize=(9, 3 * (9 * 0.82 * shape + 0.9)), layout="constrained")
+    drawn = Figure(figsize=(9, 3 * (9 * 0.82 * shape + 0.45)), layout="constrained")
     top, middle, bottom = drawn.subplots(3, 1, sharex=True)
     frame = river.run.nearest(time, "bodies")
     bodies, around = river.run.bodies(frame), outlines(river, frame)
@@ -87,7 +87,7 @@ def long_section(river: River, time: float) -> Figure | None:
     bottom.set(ylabel="velocity (m/s)", xlabel="x (m)", xlim=(river.case.box.min[0], river.case.box.max[0]))
     bottom.set_ylim(min(0.0, *bottom.get_ylim()), None)
     for each in (top, bottom):
-        each.legend(fontsize=7, frameon=False, ncols=4)
+        each.legend(fontsize=7, frameon=False, ncols=4, loc="lower right", bbox_to_anchor=(1.0, 0.99))
     return drawn
 
 

@@ -20,8 +20,8 @@ _NEAR = 0.5  # spacings between footprints that count as neighbours, and over th
 
 
 class Verdict(NamedTuple):
-    """A jam, or None; where it stands, head and toe, m; its layers and kind, "none" without a jam; what it was judged
-    by: supply of ice, m3/s, speed of the water, m/s, window, s."""
+    """A jam, or None; where it stands, head and toe, m; how many floes lie over each other where there are any, and its
+    kind, "none" without a jam; what it was judged by: supply of ice, m3/s, speed of the water, m/s, window, s."""
 
     jam: Jam | None
     head: float
@@ -47,10 +47,13 @@ def verdict(river: River) -> Verdict | None:
     if found is None:
         return Verdict(None, np.nan, np.nan, np.nan, "none", *by)
     fields, x, end = river.fields, river.columns.x, found.begin + wait
-    moves, solid = (profiles.mean_between(fields.time, of, found.begin, end) for of in (fields.speed, fields.solid))
+    moves, solid, cover = (
+        profiles.mean_between(fields.time, of, found.begin, end)
+        for of in (fields.speed, fields.solid, fields.concentration)
+    )
     head, toe = extent(x, profiles.across(moves).mean, river.drift, plane)
-    there = (solid > 0.0) & ((x >= head) & (x <= toe))[:, None]
-    layers = float(ice.layers(solid[there], river.floe).mean()) if there.any() else np.nan
+    there = (x >= head) & (x <= toe)
+    layers = float(ice.layers(solid[there].sum() / cover[there].sum(), river.floe)) if there.any() else np.nan
     grounded = on_the_bed(river, river.run.nearest(end, "bodies"), (head, toe)).any()
     return Verdict(found, head, toe, layers, kind(layers, bool(grounded)), *by)
 

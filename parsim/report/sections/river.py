@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from parsim.output.frames import write_text
 from parsim.report.measures import asked, columns, moments
 from parsim.report.page import listing, section, table
@@ -111,7 +113,8 @@ def _reach(river: River, ends: list[float]) -> str:
     """The reach as a whole at the ends of windows, s."""
     titles = ("time (s)", "energy slope", "head loss (m)", "rise (m)", "velocity (m/s)", "concentration",
               "ice thickness (m)", "jam thickness (m)", "ice speed (m/s)")  # fmt: skip
-    return table(titles, [(time, *river.reach_means(time).values()) for time in ends])
+    rows = [(time, *river.reach_means(time).values()) for time in ends]
+    return table(titles, [[value if np.isfinite(value) else None for value in row] for row in rows])
 
 
 def _blocks(river: River) -> str:
