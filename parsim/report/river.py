@@ -115,8 +115,10 @@ def time_distance(river: River) -> Figure | None:
 def pier_forces(river: River) -> Figure | None:
     """Force along x on the piers with the largest, by water and by ice, means and extremes, and its percentiles."""
     names = [river.run.body_names[k] for k in river.piers]
-    told = {name: [river.peaks(name, kind, "fx") for kind in ("water", "contact")] for name in names}
-    told = {name: both for name, both in told.items() if both[0] is not None}
+    told = {
+        name: [peaks for kind in ("water", "contact") if (peaks := river.peaks(name, kind, "fx"))] for name in names
+    }
+    told = {name: both for name, both in told.items() if both}
     if not told:
         return None
     largest = sorted(told, key=lambda name: -max(percentiles(peaks, (0.0,))[0, 0] for peaks in told[name]))[:MOST]

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
+
+Body = TypeVar("Body", bound=Hashable)
 
 
-def arches(pairs: Iterable[tuple[Hashable, Hashable]], piers: Sequence[Hashable]) -> list[list[Hashable]]:
+def arches(pairs: Iterable[tuple[Body, Body]], piers: Sequence[Body]) -> list[list[Body]]:
     """The shortest chain of floes between every two piers that have one, piers at both ends; none goes through a pier.
 
     pairs: bodies that touch, by name or number.
     """
-    beside: dict[Hashable, list[Hashable]] = {}
+    beside: dict[Body, list[Body]] = {}
     for one, other in pairs:
         beside.setdefault(one, []).append(other)
         beside.setdefault(other, []).append(one)
-    found = []
+    found: list[list[Body]] = []
     for k, pier in enumerate(piers):
         chains = _chains(beside, pier, set(piers))
         found += [chains[other] for other in piers[k + 1 :] if other in chains]
@@ -50,7 +53,7 @@ def _way(came, last):
     return way[::-1]
 
 
-def at_pier(pairs: Iterable[tuple[Hashable, Hashable]], pier: Hashable) -> int:
+def at_pier(pairs: Iterable[tuple[Body, Body]], pier: Body) -> int:
     """How many bodies touch a pier."""
     return len({one if other == pier else other for one, other in pairs if pier in (one, other)})
 
