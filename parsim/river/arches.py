@@ -60,18 +60,18 @@ def at_pier(pairs: Iterable[tuple[Body, Body]], pier: Body) -> int:
 
 def outline(points: np.ndarray) -> np.ndarray:
     """Corners (k, 2) of the convex outline of points (n, 2), anticlockwise (Andrew 1979)."""
-    ordered = np.unique(points, axis=0)
+    ordered = np.unique(points, axis=0).tolist()
     if len(ordered) < 3:
-        return ordered
-    halves = []
+        return np.array(ordered)
+    corners: list[list[float]] = []
     for each in (ordered, ordered[::-1]):
-        half: list[np.ndarray] = []
+        half: list[list[float]] = []
         for point in each:
             while len(half) > 1 and _turn(half[-2], half[-1], point) <= 0.0:
                 half.pop()
             half.append(point)
-        halves += half[:-1]
-    return np.array(halves)
+        corners += half[:-1]
+    return np.array(corners)
 
 
 def _turn(a, b, c):
