@@ -38,7 +38,8 @@ COMPILED = {"kernel", "each", "rows", "implements", "compiled"}
 STRICT = ("fluid/", "particles/", "coupling/")
 SEEN_ONLY = "fluid/wcmps/energy.py"  # goes into no step
 ABOVE_KERNELS = {"case", "commands", "launch", "observe", "output", "report", "run"}
-BESIDE_REPORT = {"output", "errors", "case", "report", "launch"}
+BESIDE_REPORT = {"output", "errors", "case", "report", "launch", "river"}
+BESIDE_RIVER = {"output", "case", "geometry", "machine", "river"}
 PHYSICS = ("boundary/", "coupling/", "fluid/", "particles/", "solid/")
 
 
@@ -196,6 +197,8 @@ def test_imports(path):
         assert not own(parsed) & ABOVE_KERNELS, "kernels import downward only"
     if inside.startswith("report/"):
         assert own(parsed) <= BESIDE_REPORT, "report reads files and knows no solver"
+    if inside.startswith("river/"):
+        assert own(parsed) <= BESIDE_RIVER, "measures are of arrays and files, and know no solver"
     if inside.startswith(PHYSICS):
         assert not own(parsed) & {"domain", "launch", "run"}, "the physics never sees a rank"
 

@@ -43,6 +43,7 @@ sensors = [
     {kind = "force", name = "floor", wall = "z_min"},
     {kind = "flux", name = "through", x = 0.1},
     {kind = "velocity", name = "line", x = 0.1, width = 0.05},
+    {kind = "load", name = "push", body = "floe"},
 ]
 """
 
@@ -65,7 +66,7 @@ def test_every_column_has_rows_of_one_length_and_one_unit(run, name):
     assert list(series) == list(units) and len(series["step"]) > 3
     assert {len(values) for values in series.values()} == {len(series["step"])}
     texts = {column for column, values in series.items() if values.dtype.kind == "U"}
-    assert texts <= {"body", "kind", "gauge", "what", "probe", "patch", "section", "line"}
+    assert texts <= {"body", "kind", "gauge", "what", "probe", "patch", "section", "line", "sensor"}
     assert all(units[column] == "-" for column in texts | {"step"}) and units["time"] == "s"
 
 

@@ -8,7 +8,7 @@ from parsim.case import places
 from parsim.case.fill import TOUCH, water_at
 from parsim.errors import nearest, suggestion
 from parsim.geometry.faces import names_of_walls, period, repeats, walled_sides
-from parsim.observe.sensors import Gauge
+from parsim.observe.sensors import Gauge, Load
 
 PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
 
@@ -223,6 +223,8 @@ def sensors(case):
         if body is not None and body not in names:
             hint = suggestion(nearest(body, names))
             out.append(f'{key}.body = "{body}": no such body; allowed: {", ".join(names[:9]) or "none"}{hint}')
+        if isinstance(sensor, Load) and body is None and not any(one.fixed for one in case.bodies):
+            out.append(f"{key}: there is no fixed body whose loads it could tell; name one as its body")
     return out
 
 

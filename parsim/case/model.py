@@ -17,6 +17,7 @@ from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
 from parsim.case.file import locate, read, replaced, written
 from parsim.case.friction import Eddies, Friction
+from parsim.case.measure import Measure
 from parsim.case.messages import validated
 from parsim.case.output import Output, Report
 from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
@@ -153,6 +154,7 @@ class Case(Table):
     run: Run = Field(description="how long and in what steps")
     output: Output = Field(Output(), description="what is written, and when")
     report: Report = Field(Report(), description="what the page of the run shows")
+    measure: Measure | None = Field(None, description="what is measured of a river with ice; left out: nothing")
     materials: dict[Name, Material] = Field({}, description="materials by name")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies")
     joints: tuple[Joint, ...] = Field((), description="what ties bodies to the world")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
     from parsim.case.model import Case
@@ -29,6 +29,20 @@ class Observer(Protocol):
 
     def rows(self, simulation: Simulation) -> list[list[Any]]:
         """Rows, lists of values in the order of the columns; called on all ranks together."""
+
+
+@runtime_checkable
+class Follower(Observer, Protocol):
+    """One that looks at every step, and so has something to keep between rows."""
+
+    def see(self, simulation: Simulation) -> None:
+        """After every step; called on all ranks together."""
+
+    def kept(self) -> dict[str, Any]:
+        """What a restart needs, as JSON has it; the same on all ranks."""
+
+    def restore(self, kept: dict[str, Any]) -> None:
+        """Go on from what `kept` returned."""
 
 
 def columns(**units: str) -> tuple[Column, ...]:

@@ -16,6 +16,7 @@ from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
 from parsim.observe.openings import Openings
+from parsim.observe.peaks import Peaks
 from parsim.observe.probes import Probes
 from parsim.observe.velocities import Velocities
 
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
     from parsim.run.simulation import Simulation
 
 # what is seen at a time; what has left is told at once
-OBSERVERS = (Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings)
+OBSERVERS = (
+    Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings, Peaks,
+)  # fmt: skip
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
 

@@ -60,4 +60,12 @@ class Line(Table):
     width: Positive = Field(description="edge of the square column over which is averaged, m")
 
 
-Sensor = choice(Gauge, Probe, Patch, Section, Line)
+class Load(Table):
+    """A body whose loads are told of all steps: mean, extremes and impulse between rows."""
+
+    kind: Literal["load"] = Field(description="mean, extremes and impulse of what water and contacts do to bodies")
+    name: Name = Field(description="name, used in results")
+    body: Name | None = Field(None, description="body; left out: every fixed one")
+
+
+Sensor = choice(Gauge, Probe, Patch, Section, Line, Load)

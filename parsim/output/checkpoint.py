@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from parsim.particles.state import Field
 
 FOLDER, SUFFIX, _PARTS = "checkpoints", ".h5", "parts"
-_KIND = b"parsim checkpoint, format 5\n"
+_KIND = b"parsim checkpoint, format 6\n"
 _OVERHEAD = 65536  # bytes of a file besides its water, bodies not counted
 _BLOCK = 512  # bytes of the text; what HDF5 calls a user block
 _PIECE = 1 << 22  # bytes hashed at a time

@@ -18,6 +18,7 @@ from parsim import __version__
 from parsim.errors import WriteError
 from parsim.machine import variant
 from parsim.observe.lost import Lost
+from parsim.observe.observer import Follower
 from parsim.observe.observers import OBSERVERS, TABLES
 from parsim.output.frames import WaterFrame, write_bodies, write_index, write_text
 from parsim.output.reader import MARK
@@ -54,7 +55,8 @@ class Recorder:
         self.resumed = account
         frames = account["frames"] if account else {"water": [], "bodies": []}
         self.frames = {kind: [tuple(entry) for entry in entries] for kind, entries in frames.items()}
-        self.info = {"status": "running", "parsim": __version__, "started": _now(), "pieces": self._earlier()}
+        started = datetime.now(UTC).isoformat(timespec="seconds")
+        self.info = {"status": "running", "parsim": __version__, "started": started, "pieces": self._earlier()}
 
     def _earlier(self):
         """The pieces of the run that came before this one."""
@@ -82,6 +84,7 @@ class Recorder:
     def begin(self, simulation: Simulation) -> None:
         """Open the tables; write the first rows and frame, unless the run goes on."""
         self.observers, self.lost = [observer(self.case) for observer in OBSERVERS], Lost(self.case)
+        self.followers = {each.name: each for each in self.observers if isinstance(each, Follower)}
         self.next_frame, self.next_row = simulation.time, simulation.time
         self.particles = {
             "fluid": simulation.fluid_count,
@@ -92,6 +95,8 @@ class Recorder:
         if self.resumed:
             self.particles = self.resumed["particles"]
             self.next_frame, self.next_row = self.resumed["next_frame"], self.resumed["next_row"]
+            for name, kept in self.resumed["followers"].items():
+                self.followers[name].restore(kept)
         if self.main:
             self._open_tables()
             self._write_indices()
@@ -121,6 +126,7 @@ class Recorder:
             "frames": frames,
             "next_frame": self.next_frame,
             "next_row": self.next_row,
+            "followers": {name: follower.kept() for name, follower in self.followers.items()},
             "name": self.name,
             "particles": self.particles,
             "kernel": variant.chosen(),
@@ -139,6 +145,8 @@ class Recorder:
             self.folder.lock.beat()
             self.progress.step(simulation.step_count, simulation.time, simulation.dt, simulation.active)
         with simulation.timers("output"):
+            for follower in self.followers.values():
+                follower.see(simulation)
             if simulation.time >= self.next_row:
                 self.next_row = next_multiple(simulation.time, self.case.output.series)
                 self._rows(simulation)
@@ -289,7 +297,3 @@ class Recorder:
 
     def _write_info(self):
         write_text(self.out / MARK, json.dumps(self.info, indent=1) + "\n")
-
-
-def _now():
-    return datetime.now(UTC).isoformat(timespec="seconds")

@@ -16,8 +16,24 @@ from parsim.report.sections import (
     pictures,
     profiles,
     published,
+    river,
     sensors,
     speed,
 )
 
-SECTIONS = (outcome, published, pictures, bodies, profiles, front, energy, counts, gauges, sensors, loads, speed, about)
+SECTIONS = (
+    outcome,
+    published,
+    pictures,
+    bodies,
+    profiles,
+    river,
+    front,
+    energy,
+    counts,
+    gauges,
+    sensors,
+    loads,
+    speed,
+    about,
+)

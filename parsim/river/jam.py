@@ -1,0 +1,83 @@
+"""Whether ice has jammed: when, where, of what kind, and whether it holds."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+SHARE = 0.05  # of the supply through the control plane, and of the water's speed, below which ice has jammed
+SHORTEST, FLOES = 5.0, 10.0  # s, and floes that the water passes: the longer of the two is the time that it takes
+HOLDS = 3.0  # times that time, after which a jam holds
+LAYERS = 1.5  # below which a jam is one of the surface
+
+
+class Jam(NamedTuple):
+    """begin, s, of the first window of its time in which ice stood; end, s, of the last; lasts: "held", "transient", or
+    "open" where the run ends before that is known."""
+
+    begin: float
+    end: float
+    lasts: str
+
+
+def window(floe: float, speed: float) -> float:
+    """Time, s, over which ice must stand to have jammed, by the median size of floes, m, and the water's speed, m/s."""
+    return max(SHORTEST, FLOES * floe / speed) if speed > 0.0 else np.inf
+
+
+def jam(
+    times: np.ndarray, passed: np.ndarray, speed: np.ndarray, supply: float, water: float, length: float
+) -> Jam | None:
+    """The first jam, None if there is none.
+
+    times (T,), s; passed (T,), m3, through the control plane so far; speed (T,), m/s, mean of the ice over the reach
+    upstream of it, NaN where there is none; supply, m3/s, of ice; water, m/s, its speed; length, s: see `window`.
+    """
+    if not np.isfinite(length):
+        return None
+    stands = _stands(times, passed, speed, supply, water, length)
+    if not stands.any():
+        return None
+    first = int(stands.argmax())
+    moves = np.flatnonzero(~stands[first:])
+    last = first + int(moves[0]) - 1 if len(moves) else len(stands) - 1
+    begin, end = float(times[first]), float(times[last] + length)
+    if end - begin >= HOLDS * length * (1.0 - 1e-9):
+        return Jam(begin, end, "held")
+    return Jam(begin, end, "transient" if len(moves) else "open")
+
+
+def _stands(times, passed, speed, supply, water, length):
+    """Whether ice stands in the window that begins at each of the times that leave room for one: bool."""
+    room = times + length <= times[-1] + 1e-9 * length
+    begin = times[room]
+    flow = (np.interp(begin + length, times, passed) - passed[room]) / length
+    known = np.nan_to_num(speed)
+    way = np.concatenate([[0.0], np.cumsum(0.5 * (known[1:] + known[:-1]) * np.diff(times))])
+    mean = (np.interp(begin + length, times, way) - way[room]) / length
+    missing = np.concatenate([[0], np.cumsum(~np.isfinite(speed))])
+    after = np.searchsorted(times, begin + length * (1.0 + 1e-9), side="right")
+    there = missing[after] == missing[:-1][room]
+    return there & (flow <= SHARE * supply) & (np.abs(mean) <= SHARE * water)
+
+
+def extent(x: np.ndarray, speed: np.ndarray, water: float, plane: float) -> tuple[float, float]:
+    """Where the ice stands upstream of a plane, m: (head, toe), of the columns without a gap of moving ice or none.
+
+    x (nx,), m; speed (nx,), m/s, of the ice there, NaN without. NaN where none stands.
+    """
+    stands = (np.abs(speed) <= SHARE * water) & (x <= plane)
+    if not stands.any():
+        return np.nan, np.nan
+    toe = int(np.flatnonzero(stands)[-1])
+    moves = np.flatnonzero(~stands[:toe])
+    half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.0
+    return float(x[moves[-1] + 1 if len(moves) else 0] - half), float(x[toe] + half)
+
+
+def kind(layers: float, grounded: bool) -> str:
+    """What a jam is, by the layers of floes in it and whether it touches the bed."""
+    if grounded:
+        return "grounded"
+    return "surface" if layers < LAYERS else "thickened"
