@@ -9,6 +9,6 @@ MEASURES = {
         bodies.apex, bodies.last_speed, bodies.mean_place, bodies.run_out, bodies.pile_height, bodies.floor_force,
         bodies.carried, bodies.tilt, bodies.rests, bodies.height_over, bodies.drift, series.mean_of, series.most_of,
         series.last_of, series.first_over, series.noise_of, series.period_of, series.damping_of, series.off_curve,
-        series.energy_made, series.off_log_law, series.off_parabola,
+        series.balance, series.energy_made, series.off_log_law, series.off_parabola,
     )
 }  # fmt: skip

@@ -53,12 +53,14 @@ def first_over(
     from_value: float | None = None,
     rows: Rows | None = None,
     over: float = 1.0,
+    dry: float = math.nan,
 ) -> float:
     """Time, over `over`, s, at which a column of a series first reaches a value, between rows; nan if never.
 
-    Since it first reached `from_value`, if that is told.
+    Since it first reached `from_value`, if that is told; `dry`: what counts where there was nothing to read.
     """
     times, values = _column(run, series, column, rows)
+    values = np.nan_to_num(values, nan=dry)
     begin = 0.0 if from_value is None else _first(times, values, from_value)
     return (_first(times, values, value) - begin) / over
 
@@ -108,10 +110,14 @@ def scaled(
     zero: float = 0.0,
     time_unit: float = 1.0,
     unit: float = 1.0,
+    dry: float = math.nan,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times from `start` over `time_unit`, s, and a column of a series from `zero` over `unit`, as curves have them."""
+    """Times from `start` over `time_unit`, s, and a column of a series from `zero` over `unit`, as curves have them.
+
+    `dry`: what counts where there was nothing to read.
+    """
     times, values = _column(run, series, column, rows)
-    return (times - start) / time_unit, (values - zero) / unit
+    return (times - start) / time_unit, (np.nan_to_num(values, nan=dry) - zero) / unit
 
 
 def off_curve(run: Run, curve: list[list[float]], over: float | None = None, **column: Any) -> float:
@@ -123,6 +129,12 @@ def off_curve(run: Run, curve: list[list[float]], over: float | None = None, **c
     at, exact = np.array(curve, float).T
     off = np.interp(at, times, values) - exact
     return float(np.sqrt(np.mean(off * off)) / (np.sqrt(np.mean(exact * exact)) if over is None else over))
+
+
+def balance(run: Run) -> float:
+    """Most that particles in, out and inside were off balance, between any two rows."""
+    read = run.series("openings")["balance"]
+    return float(read.max() - read.min())
 
 
 def energy_made(run: Run) -> float:
