@@ -23,8 +23,9 @@ def _study(path, ranks):
     from parsim.study.study import checked  # brings numba along too
 
     study, plans = checked(path, ranks)
-    kind = "searches" if study.bisection else f"rows of {study.repeats} runs at most"
-    return [f"study: {len(plans)} {kind}, for parsim study"]
+    rows = f"{len(plans)} row{'s' if len(plans) > 1 else ''}"
+    each = "a search" if study.bisection else f"{study.repeats} run{'s at most' if study.repeats > 1 else ''}"
+    return [f"study      {rows} with {each} in each, for `parsim study`"]
 
 
 def check_cases(

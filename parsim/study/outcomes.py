@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import numpy as np
@@ -124,8 +124,8 @@ class Asked(Table):
             return value
         return (self.above is None or value > self.above) and (self.below is None or value < self.below)
 
-    def faults(self, bodies: Iterable[str]) -> list[str]:
-        """What of series, columns and `bodies` (their names) a run would not know: a list of messages."""
+    def faults(self, bodies: Sequence[str] | None) -> list[str]:
+        """What of series, columns and `bodies` (their names, None: any) a run would not know: a list of messages."""
         told = []
         if _is_bool(self.function) and not (self.above is None and self.below is None):
             told.append(f"study.outcome: {getattr(self, CHOICE)} says yes or no by itself; leave above and below out")
@@ -136,10 +136,9 @@ class Asked(Table):
             columns = TABLES[series]
             named = [("column", self.column), *((f"rows.{name}", name) for name in rows)]  # type: ignore[attr-defined]
             told += [_unknown(key, name, columns) for key, name in named if name not in columns]
-        known = list(bodies)
         body = getattr(self, "body", rows.get("body"))
-        if body is not None and body not in known:
-            told.append(_unknown("body" if hasattr(self, "body") else "rows.body", body, known))
+        if bodies is not None and body is not None and body not in bodies:
+            told.append(_unknown("body" if hasattr(self, "body") else "rows.body", body, bodies))
         return told
 
 
@@ -160,7 +159,7 @@ def _hints(function):
 
 def _table(function):
     """The table of `study.outcome` that asks for a function: its arguments are the keys."""
-    hints, told = _hints(function), inspect.getdoc(function).split("\n")[0]
+    hints, told = _hints(function), (inspect.getdoc(function) or "").split("\n")[0]
     fields: dict[str, Any] = {CHOICE: (Literal[function.__name__], Field(description=told))}
     for name, parameter in list(inspect.signature(function).parameters.items())[1:]:
         left_out = ... if parameter.default is parameter.empty else parameter.default

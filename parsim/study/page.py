@@ -92,7 +92,7 @@ def _doubts(found):
         for state, words in (("failed", "have failed and are not counted"), ("no outcome", "have no outcome"))
         if counts[state]
     ]
-    if not found.complete or counts["stopped"]:
+    if not found.complete:
         told.append("The study is not complete; the same command goes on with it.")
     told += [f"{row.label}: {row.edge.note}" for row in found.rows if row.edge and row.edge.note]
     told += [

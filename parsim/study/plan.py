@@ -144,7 +144,7 @@ class Search:
                 (yes if decided[0] else no).append(middle)
 
     def _looked_beside(self, edge, no, yes, vote):
-        """With one value outside of the edge looked at: amid the widest stretch beside it that was passed over."""
+        """With one value outside of the edge looked at: amid the wider of the stretches beside it."""
         sides = [(abs(side[-1] - side[-2]), side is yes, side) for side in (no, yes) if len(side) > 1]
         _, expected, side = max(sides, key=lambda each: each[0])
         decided = vote(edge, self._search.votes, _between(side[-1], side[-2]))
@@ -168,13 +168,14 @@ class _Votes:
             decided, pending = self._of(value, self._most[value])
             edge.wanted += pending
             if decided is None and not pending:
-                edge.note = f"{value!r}: too many runs have failed for a majority"
+                edge.note = edge.note or f"{value!r}: too many runs have failed for a majority"
             found.append(decided)
         return None if edge.wanted or edge.note else [decided is True for decided in found]
 
     def _of(self, value, votes):
         """(majority of `votes` runs at a value, or None; runs it needs); others take the place of runs that failed."""
-        need, yes, no, pending = votes // 2 + 1, 0, 0, []
+        need, yes, no = votes // 2 + 1, 0, 0
+        pending: list[Wanted] = []
         for number, run in enumerate(self._plan.runs_at(value)):
             if number >= 2 * votes or len(pending) >= need - max(yes, no):
                 break

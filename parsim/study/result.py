@@ -72,8 +72,8 @@ class Result:
 
     @property
     def complete(self) -> bool:
-        """Whether no row wants more runs."""
-        return all(row.complete for row in self.rows)
+        """Whether no row wants more runs, and none was cut short."""
+        return all(row.complete for row in self.rows) and not self.counts[STOPPED]
 
     def places(self) -> list[float]:
         """The number that differs between rows, (rows,); else their numbers."""
@@ -90,7 +90,7 @@ def result(study: Study, plans: Sequence[Sample | Search], runs: Runs) -> Result
     if not study.fit or study.bisection:
         return found
     points = [(x, outcome) for x, row in zip(found.places(), rows, strict=True) for outcome in row.outcomes]
-    return Result(study, rows, key, logistic(*zip(*points, strict=True)) if points else None)  # type: ignore[arg-type]
+    return Result(study, rows, key, logistic(*zip(*points, strict=True)) if points else None)
 
 
 def _row(study, plan, runs):

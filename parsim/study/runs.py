@@ -107,7 +107,7 @@ class Runs:
         info = run.info
         status = info.get("status")
         if status == "done" and info.get("time", 0.0) >= case.run.until:
-            outcome = self._study.outcome.of(run)  # type: ignore[attr-defined]
+            outcome = self._study.outcome.of(run)
             return Seen(number, DONE, outcome, "" if outcome is not None else "has no outcome")
         if status == "failed":
             return Seen(number, FAILED, note=str(info.get("error", "")))

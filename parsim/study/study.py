@@ -68,14 +68,13 @@ def checked(case: Path, ranks: int) -> tuple[Study, list[Sample | Search]]:
     """
     asked = read(case)
     planned = plans(asked)
-    told: dict[str, str] = {}
+    told = dict.fromkeys(asked.outcome.faults(None), "")
     for plan in planned:
         for run in plan.first():
             try:
                 loaded = load(case, run.changes)
+                told |= dict.fromkeys(asked.outcome.faults([body.name for body in loaded.bodies]), "")
                 check_ranks(loaded, ranks)
-                faults = asked.outcome.faults([body.name for body in loaded.bodies])
-                told |= dict.fromkeys(faults, "")
             except InputError as error:
                 for message in error.messages:
                     told.setdefault(message, f"study, {', '.join(run.changes)}: ")

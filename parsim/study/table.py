@@ -58,7 +58,7 @@ class Bisection(Table):
 class Study(Table):
     """What is varied, and what is asked of each run."""
 
-    outcome: Outcome = Field(description="what is asked of each finished run")  # type: ignore[valid-type]
+    outcome: Outcome = Field(description="what is asked of each finished run")
     seeds: Seeds | None = Field(None, description="a key that differs from run to run; left out: one run of each")
     table: Text | None = Field(None, description="CSV: the first line names keys, each further line is a row of runs")
     grid: dict[Text, tuple[Any, ...]] = Field({}, description="lists of values by key; all combinations are rows")
