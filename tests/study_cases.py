@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 from parsim.case.load import load
 from parsim.observe.observers import TABLES
@@ -42,15 +43,15 @@ def write(folder, text):
 
 
 class Machine:
-    """Makes runs as `subprocess.Popen` of side.py; each takes as many looks as `looks`.
+    """Makes runs as `subprocess.Popen` of side.py; each is done after `slower` looks more than the one before.
 
     `law`(case, number) is the height at which the sphere ends; or how the run ends otherwise: "fail", "kill", "stop",
     "bad", "full". `calls`: the words of each, `most`: how many were there at a time.
     """
 
-    def __init__(self, monkeypatch, law, looks=1):
-        self.law, self.looks, self.calls, self.running, self.most = law, looks, [], 0, 0
-        monkeypatch.setattr(side.subprocess, "Popen", self.start)
+    def __init__(self, monkeypatch, law, slower=0):
+        self.law, self.slower, self.calls, self.running, self.most = law, slower, [], 0, 0
+        monkeypatch.setattr(side, "subprocess", SimpleNamespace(Popen=self.start, DEVNULL=None))
         monkeypatch.setattr(side, "_LOOK", 0.0)
 
     def start(self, words, stdout, **options):
@@ -70,7 +71,8 @@ class Process:
     """One run, made at the last look at it."""
 
     def __init__(self, machine, words, log):
-        self.machine, self.words, self.log, self.left, self.returncode = machine, words, log, machine.looks, None
+        self.machine, self.words, self.log, self.returncode = machine, words, log, None
+        self.left = 1 + machine.slower * len(machine.calls)
         self.signalled = []
 
     def send_signal(self, number):
@@ -78,7 +80,7 @@ class Process:
 
     def poll(self):
         self.left -= 1
-        if self.left <= 0 and self.returncode is None:
+        if self.left == 0:  # once: a signal may come while the run is made
             self.machine.running -= 1
             self.returncode = self._made()
         return self.returncode
