@@ -3,19 +3,21 @@
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import time
 
 import numpy as np
 import pytest
+from example_cases import ROOT
 from study_cases import BELOW, NUMBER, SEARCH, SEEDS, Machine, folder, write
 
 import parsim
 from parsim.__main__ import main
 from parsim.case.load import load
 from parsim.launch import stop
-from parsim.study import side
+from parsim.study import side, slurm
 from parsim.study.statistics import wilson
 
 GRID = 'grid = {"bodies.sphere.position.2" = [0.2, 0.25, 0.3, 0.35, 0.4]}\n'
@@ -120,7 +122,7 @@ def test_runs_that_fail_or_have_no_outcome_are_counted_and_not_made_again(study,
     assert not told["complete"] and told["rows"][0]["yes"] == told["rows"][0]["outcomes"] == 3
     assert "run 1, bodies.sphere.position.0=0.2: failed: RunError: it flew" in capsys.readouterr().out
     page = (study.out / "index.html").read_text()
-    assert "1 runs have failed and are not counted" in page and "the same command goes on with it" in page
+    assert "Failed and not counted: 1 of 6 runs" in page and "the same command goes on with it" in page
     said.clear()
     assert study(BELOW + SEEDS % ", most = 6") == 1
     assert machine.numbers[6:] == [2] and machine.calls[6][0] == "resume"
@@ -230,27 +232,53 @@ def test_the_walltime_is_handed_on(study, monkeypatch):
 
 
 def test_an_array_of_slurm_makes_the_runs_that_are_wanted(study, monkeypatch, tmp_path, capsys):
-    """The script hands each task to jobs/slurm.sh of a checkout, here a stand-in that says what it was given."""
+    """The script is run as one task of its array, with stand-ins for Slurm's commands and for the checkout's Python."""
     Machine(monkeypatch, lambda case, number: 0.2)
     assert study(BELOW + SEEDS % ", most = 2") == 0
     checkout = tmp_path / "a checkout"
-    (checkout / "jobs").mkdir(parents=True)
-    (checkout / "jobs" / "slurm.sh").write_text('printf "%s\\n" "$PARSIM" "$@"\n')
+    shutil.copytree(ROOT / "jobs", checkout / "jobs")
+    (checkout / ".venv" / "bin").mkdir(parents=True)
+    for program, text in (
+        (checkout / ".venv" / "bin" / "python", 'printf "%s\\n" "$@"'),
+        (tmp_path / "scontrol", "exit 0"),
+        (tmp_path / "squeue", "echo 1:50:00"),
+    ):
+        program.write_text(f"#!/bin/sh\n{text}\n")
+        program.chmod(0o755)
     monkeypatch.setenv("PARSIM", str(checkout))
     assert study(BELOW + SEEDS % ", most = 5", "--slurm", "-n", "4", "--walltime", "2:00:00") == 0
     script = study.out / "slurm.sh"
     assert f"wrote {script}: 3 runs; next: sbatch {script}" in capsys.readouterr().out
     options = [line for line in script.read_text().splitlines() if line.startswith("#SBATCH")]
     assert {"#SBATCH --array=3-5", "#SBATCH --ntasks=4", "#SBATCH --time=2:00:00", "#SBATCH --requeue"} <= set(options)
-    ran = subprocess.run(["bash", script], capture_output=True, text=True, check=True)
-    words = [tmp_path / "fall.toml", study.out / "run", study.out / "runs.csv"]
-    assert ran.stdout.splitlines() == [str(checkout), *map(str, words)]
-    assert main(["check", str(words[0]), "--table", str(words[2])]) == 0  # each row is a run
+    told = {"SLURM_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": "4", "SLURM_NTASKS": "4"}
+    path = f"{tmp_path}:{os.environ['PATH']}"
+    ran = subprocess.run(
+        ["bash", script], capture_output=True, text=True, cwd=tmp_path, env={**os.environ, **told, "PATH": path}
+    )
+    case, table = tmp_path / "fall.toml", study.out / "runs.csv"
+    given = ["run", case, "-o", study.out / "run-4", "--table", table, "--row", 4, "-n", 4, "--walltime", "1:50:00"]
+    assert ran.stdout.splitlines()[-len(given) - 3 :] == ["-P", "-m", "parsim", *map(str, given)], ran.stderr
+    assert main(["check", str(case), "--table", str(table)]) == 0  # each row is a run
+
+
+def test_no_array_is_written_where_none_is_wanted_or_can_be_run(study, monkeypatch, tmp_path, capsys):
+    Machine(monkeypatch, lambda case, number: 0.2)
+    assert study(BELOW + SEEDS % ", most = 2") == 0
     assert study(BELOW + SEEDS % ", most = 2", "--slurm") == 0 and "no run is wanted" in capsys.readouterr().out
-    assert study(BELOW, "--slurm", "--gather") == 2
+    assert study(BELOW + SEEDS % "", "--slurm", "--gather") == 2
+    assert "--gather and --slurm: give one of them" in capsys.readouterr().err
     monkeypatch.setenv("PARSIM", str(tmp_path))
     assert study(BELOW + SEEDS % ", most = 9", "--slurm") == 2
     assert "holds no jobs/slurm.sh; name a checkout of parsim" in capsys.readouterr().err
+    assert not (study.out / "slurm.sh").exists() and len((study.out / "runs.csv").read_text().splitlines()) == 3
+
+
+@pytest.mark.parametrize(("numbers", "said"), [
+    ([1], "1"), ([3, 1, 2], "1-3"), ([1, 2, 4, 7, 8, 9], "1-2,4,7-9"), ([5, 3], "3,5"),
+])  # fmt: skip
+def test_an_array_is_written_as_slurm_reads_it(numbers, said):
+    assert slurm._ranges(numbers) == said
 
 
 def test_real_runs_side_by_side(study, capsys):

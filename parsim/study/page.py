@@ -16,6 +16,7 @@ from parsim.study.statistics import wilson
 
 _SIZE, _DOTS, _SMALL = (6.0, 3.6), 150, 9  # inches, dots per inch, points: legible on a narrow screen too
 _FINE = 200  # points of a curve
+_WHOLE = (-0.02, 1.02)  # an axis of probabilities
 
 
 def write(found: Result, title: str, out: Path) -> Path:
@@ -88,8 +89,8 @@ def _asked(found):
 def _doubts(found):
     counts = found.counts
     told = [
-        f"{counts[state]} runs {words}"
-        for state, words in (("failed", "have failed and are not counted"), ("no outcome", "have no outcome"))
+        f"{words}: {counts[state]} of {len(found.runs)} runs"
+        for state, words in (("failed", "Failed and not counted"), ("no outcome", "Done without an outcome"))
         if counts[state]
     ]
     if not found.complete:
@@ -164,12 +165,13 @@ def _draw_one(axes, found, row):
         every = np.array([wilson(int(sum(map(bool, told[:n]))), int(n)) for n in counts]).reshape(-1, 3)
         axes.fill_between(counts, every[:, 1], every[:, 2], color=WATER, alpha=0.2, linewidth=0)
         axes.plot(counts, every[:, 0], "o-", color=WATER, markersize=3)
-        axes.set(xlabel="runs", ylabel="probability of yes", ylim=(-0.02, 1.02))
+        axes.set(xlabel="runs", ylabel="probability of yes", ylim=_WHOLE)
+        axes.xaxis.get_major_locator().set_params(integer=True)
         return
     axes.plot(np.sort(told), (np.arange(len(told)) + 0.5) / max(len(told), 1), "o", color=WATER, markersize=4)
     for share, each in zip(found.study.quantiles, row.quantiles, strict=False):
         axes.plot([each.low, each.high], [share, share], color=ACCENT, linewidth=2, alpha=0.6)
-    axes.set(xlabel="outcome", ylabel="share of the runs up to it", ylim=(-0.02, 1.02))
+    axes.set(xlabel="outcome", ylabel="share of the runs up to it", ylim=_WHOLE)
 
 
 def _draw_rows(axes, found):
@@ -183,8 +185,9 @@ def _draw_rows(axes, found):
         axes.plot(x, value, "o", color=WATER, markersize=5)
     if found.curve:
         _draw_curve(axes, found.curve)
-    decides = found.study.outcome.decides
-    axes.set(xlabel=found.key or "row", ylabel="probability of yes" if decides else "mean of the outcome")
+    axes.set(xlabel=found.key or "row", ylabel="mean of the outcome")
+    if found.study.outcome.decides:
+        axes.set(ylabel="probability of yes", ylim=_WHOLE)
 
 
 def _draw_edges(axes, found):

@@ -45,8 +45,7 @@ class Hands:
             with heeding(self._hear):
                 self._stopping = stop.early()
                 while True:
-                    if not self._stopping:
-                        self._fill(plans, runs)
+                    self._fill(plans, runs)
                     if not self._running:
                         return not self._stopping
                     for number in self._ended(lock):
@@ -64,7 +63,7 @@ class Hands:
     def _fill(self, plans, runs):
         for plan in plans:
             for run in plan.wanted(runs.known):
-                if len(self._running) >= self.jobs:
+                if self._stopping or len(self._running) >= self.jobs:
                     return
                 (number,) = runs.enter([run])
                 if number not in self._running and runs.seen(run).state != RUNNING:
@@ -92,6 +91,8 @@ class Hands:
             preexec_fn=_as_child,
         )
         self._running[number] = (process, file, began, run)
+        if self._stopping:  # a signal came while it was started
+            self._stop()
 
     def _take(self, number, runs, told):
         process, file, began, run = self._running.pop(number)

@@ -31,13 +31,18 @@ exec bash "$PARSIM/jobs/slurm.sh" {words}
 """
 
 
-def write(runs: Runs, numbers: Sequence[int], ranks: int, walltime: str | None) -> Path:
-    """Write OUT/slurm.sh for runs of these numbers; returns its path. Raises InputError where there is no checkout."""
-    checkout = Path(os.environ.get("PARSIM") or Path(parsim.__file__).parents[1]).resolve()
-    if not (checkout / "jobs" / "slurm.sh").is_file():
+def checkout() -> Path:
+    """The checkout of parsim whose scripts the jobs use. Raises InputError where there is none."""
+    found = Path(os.environ.get("PARSIM") or Path(parsim.__file__).parents[1]).resolve()
+    if not (found / "jobs" / "slurm.sh").is_file():
         raise InputError(
-            f"--slurm: {checkout} holds no jobs/slurm.sh; name a checkout of parsim: export PARSIM=/path/to/checkout"
+            f"--slurm: {found} holds no jobs/slurm.sh; name a checkout of parsim: export PARSIM=/path/to/checkout"
         )
+    return found
+
+
+def write(runs: Runs, numbers: Sequence[int], place: Path, ranks: int, walltime: str | None) -> Path:
+    """Write OUT/slurm.sh for runs of these numbers by the checkout at `place`; returns its path. Raises WriteError."""
     out = runs.out.resolve()
     words = [runs.case.resolve(), out / "run", out / TABLE]
     path = runs.out / SCRIPT
@@ -49,7 +54,7 @@ def write(runs: Runs, numbers: Sequence[int], ranks: int, walltime: str | None) 
         ranks=ranks,
         time=f"\n#SBATCH --time={walltime}" if walltime else "",
         log=shlex.quote(str(out / "run-%a.log")),
-        checkout=shlex.quote(str(checkout)),
+        checkout=shlex.quote(str(place)),
         words=shlex.join(map(str, words)),
     )
     write_text(path, text)

@@ -54,7 +54,9 @@ def bootstrap(values: tuple[float, ...], quantiles: tuple[float, ...] = ()) -> t
     if sample.size == 1:
         return tuple(Estimate(float(value), math.nan, math.nan) for value in found)
     drawn = np.random.Generator(np.random.Philox(key=0)).integers(0, sample.size, (RESAMPLES, sample.size))
-    again = np.vstack([sample[drawn].mean(axis=1), np.quantile(sample[drawn], shares, axis=1).reshape(-1, RESAMPLES)])
+    again = [sample[drawn].mean(axis=1)]
+    if shares:
+        again += list(np.quantile(sample[drawn], shares, axis=1))
     ends = np.quantile(again, _SHARES, axis=1)
     return tuple(Estimate(*map(float, row)) for row in zip(found, *ends, strict=True))
 

@@ -88,7 +88,8 @@ def _submitted(planned, runs, ranks, time):
     if not wanted:
         print("no run is wanted; --gather tells what follows of those there are")
         return exits.DONE
-    path = slurm.write(runs, runs.enter(wanted), ranks, time)
+    place = slurm.checkout()
+    path = slurm.write(runs, runs.enter(wanted), place, ranks, time)
     print(f"wrote {path}: {len(wanted)} runs; next: sbatch {path}")
     return exits.DONE
 
