@@ -51,6 +51,7 @@ class Machine:
 
     def __init__(self, monkeypatch, law, slower=0):
         self.law, self.slower, self.calls, self.running, self.most = law, slower, [], 0, 0
+        self.processes = []
         monkeypatch.setattr(side, "subprocess", SimpleNamespace(Popen=self.start, DEVNULL=None))
         monkeypatch.setattr(side, "_LOOK", 0.0)
 
@@ -59,7 +60,8 @@ class Machine:
         self.calls.append(words)
         self.running += 1
         self.most = max(self.most, self.running)
-        return Process(self, words, stdout)
+        self.processes.append(Process(self, words, stdout))
+        return self.processes[-1]
 
     @property
     def numbers(self):

@@ -165,6 +165,20 @@ def test_a_signal_stops_all_runs_and_the_study(study, monkeypatch):
     assert study(BELOW + SEEDS % ", most = 9") == 0 and machine.numbers[4:] == [4, 5, 6, 7, 8, 9]
 
 
+@pytest.mark.parametrize(("apart", "second"), [(-1.0, signal.SIGTERM), (60.0, signal.SIGUSR1)])
+def test_a_second_signal_ends_runs_at_once(apart, second, study, monkeypatch):
+    def law(case, number):
+        if number == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), signal.SIGINT)
+        return 0.5
+
+    machine = Machine(monkeypatch, law, slower=5)
+    monkeypatch.setattr(side, "SAME_SIGNAL", apart)
+    assert study(BELOW + SEEDS % ", most = 9", "--jobs", "2") == stop.STOPPED
+    assert machine.processes[1].signalled == [signal.SIGUSR1, second]
+
+
 def test_a_later_end_goes_on_with_runs_that_were_done(study, monkeypatch, tmp_path):
     machine = Machine(monkeypatch, lambda case, number: case.run.until)
     assert study(NUMBER + SEEDS % ", most = 2") == 0

@@ -13,7 +13,7 @@ from typing import IO
 
 from parsim.errors import InputError, WriteError
 from parsim.launch import exits, stop
-from parsim.launch.mpirun import die_with_parent, heeding
+from parsim.launch.mpirun import SAME_SIGNAL, die_with_parent, heeding
 from parsim.output.lock import Lock
 from parsim.output.reader import is_output
 from parsim.study.plan import Sample, Search, Wanted
@@ -32,6 +32,7 @@ class Hands:
     walltime: float | None = None
     _running: dict[int, tuple[subprocess.Popen[bytes], IO[bytes], int, Wanted]] = field(default_factory=dict)
     _stopping: bool = False
+    _heard: float | None = None  # when the first signal came
 
     def work(
         self, plans: Sequence[Sample | Search], runs: Runs, lock: Lock, told: Callable[[int, Wanted], object]
@@ -41,8 +42,8 @@ class Hands:
         `told`(number, run) is called at the end of each. Raises InputError or WriteError where a run does, once the
         others have stopped.
         """
-        try:
-            with heeding(self._hear):
+        with heeding(self._hear):
+            try:
                 self._stopping = stop.early()
                 while True:
                     self._fill(plans, runs)
@@ -50,8 +51,8 @@ class Hands:
                         return not self._stopping
                     for number in self._ended(lock):
                         self._take(number, runs, told)
-        finally:
-            self._end()
+            finally:
+                self._end()
 
     def _ended(self, lock):
         """The numbers of the runs that end next."""
@@ -110,15 +111,19 @@ class Hands:
         runs.forget(number, give_up=not self._stopping)
         told(number, run)
 
-    def _hear(self, *_):
-        self._stop()
+    def _hear(self, number, _):
+        """A first signal has all runs leave a checkpoint, another one ends them at once."""
+        now = time.monotonic()
+        first = self._heard is None or now - self._heard <= SAME_SIGNAL or number == signal.SIGUSR1
+        self._heard = self._heard or now
+        self._stop(signal.SIGUSR1 if first else signal.SIGTERM)
 
-    def _stop(self):
-        """Have all runs leave a checkpoint and end, and start no more."""
+    def _stop(self, number=signal.SIGUSR1):
+        """Have all runs end, and start no more."""
         self._stopping = True
         for process, *_ in self._running.values():
             if process.poll() is None:
-                process.send_signal(signal.SIGUSR1)
+                process.send_signal(number)
 
     def _end(self):
         """Let what still runs come to its end in good order."""
