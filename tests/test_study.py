@@ -320,13 +320,13 @@ def test_a_study_that_ends_has_its_runs_leave_checkpoints(number, code, study, t
 
     def wait(happened):
         while not happened():
-            assert process.poll() in (None, code) and time.monotonic() - begin < 100.0
+            assert process.poll() in (None, code) and time.monotonic() - begin < 300.0
             time.sleep(0.1)
 
     try:
         wait(lambda: series.is_file() and series.stat().st_size > 200)
         process.send_signal(number)
-        assert process.wait(60) == code, process.stderr.read()
+        assert process.wait(120) == code, process.stderr.read()
         wait(lambda: '"stopped"' in info.read_text())
     finally:
         process.kill()
