@@ -63,8 +63,10 @@ def run(
     case = path_of(case)
     loaded, limit = load(case, changes, until, table, row), _settings(threads, kernel, walltime)
     if ranks:
-        words = ["run", case, "-o", out, *_words(changes, table, row), *["--force"] * force]
-        return _launched(ranks, words, until, kernel, limit)
+        from parsim.commands.ranks import changed, launched
+
+        words = ["run", case, "-o", out, *changed(changes, table, row), *["--force"] * force]
+        return launched(ranks, words, until, kernel, limit)
     from parsim.run.warm import prepare
 
     prepare()
@@ -96,6 +98,28 @@ def validate(
 
 
 @command
+def study(
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML) that holds a table [study]")],
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="folder of all runs; one there goes on")],
+    jobs: Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")] = 1,
+    ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")] = 1,
+    threads: Threads = None,
+    walltime: Walltime = None,
+    gather: Annotated[bool, typer.Option("--gather", help="make no run, tell what follows of those there are")] = False,
+    slurm: Annotated[
+        bool, typer.Option("--slurm", help="write the script of a Slurm array that makes the runs")
+    ] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="go on with runs that have failed, too")] = False,
+) -> int:
+    """Make many runs of a case, by seeds, tables or bisection, and tell probabilities, quantiles and edges."""
+    from parsim.study.side import Hands
+    from parsim.study.study import study as go_on
+
+    hands = Hands(jobs, ranks, _settings(threads, None, walltime))
+    return go_on(path_of(case), out, hands, gather, slurm, walltime, retry)
+
+
+@command
 def resume(
     out: Folder,
     until: Until = None,
@@ -122,8 +146,10 @@ def resume(
     case = path_of(case) if case else None
     wanted = load(case, changes, until, table, row) if case else None
     if ranks:
-        words = ["resume", out, *(["--case", case] if case else []), *_words(changes, table, row)]
-        return _launched(ranks, words, until, kernel, limit)
+        from parsim.commands.ranks import changed, launched
+
+        words = ["resume", out, *(["--case", case] if case else []), *changed(changes, table, row)]
+        return launched(ranks, words, until, kernel, limit)
     with folders.Folder(out, Comm()) as folder:
         folder.take()
         found = folder.comm.first(find, out, until, kernel, wanted)
@@ -152,25 +178,6 @@ def _settings(threads, kernel, walltime):
     if kernel is not None:
         os.environ[variant.NAME] = variant.checked(kernel)
     return None if walltime is None else stop.seconds(walltime)
-
-
-def _words(changes, table, row):
-    """The options that say how a case is changed, for the ranks."""
-    words = [word for change in changes or () for word in ("--set", change)]
-    return words + (["--table", table, "--row", row] if table else [])
-
-
-def _launched(ranks, words, until, kernel, limit):
-    from parsim.launch.mpirun import mpirun, world
-
-    if world()[1] > 1:
-        raise InputError(f"-n {ranks}: {world()[1]} processes of this command are running already; leave -n out")
-    words += ["--until", repr(until)] if until is not None else []
-    words += ["--kernel", kernel] if kernel is not None else []
-    if limit is not None:  # that of the ranks began when this process did
-        left = max(round(limit - stop.age()), 1)
-        words += ["--walltime", f"{left // 60}:{left % 60:02d}"]
-    return mpirun(ranks, [sys.executable, "-P", "-m", "parsim", *map(str, words)], stop.early)
 
 
 @command
@@ -239,8 +246,9 @@ def schema() -> None:
     import json
 
     from parsim.case.model import schema as case_schema
+    from parsim.study.table import schema as with_study
 
-    print(json.dumps(case_schema(), indent=2))
+    print(json.dumps(with_study(case_schema()), indent=2))
 
 
 @command

@@ -27,7 +27,10 @@ def read(path, inside=()):
 
 
 def locate(data, folder):
-    """Make the paths of files that bodies name whole: they count from where the case is."""
+    """Make the paths of files that bodies and a study name whole, and read those of courses: from where the case is."""
+    study = data.get("study")
+    if isinstance(study, dict) and isinstance(study.get("table"), str):
+        study["table"] = str((folder / study["table"]).resolve())
     if isinstance(data.get("channel"), dict):
         read_courses(data["channel"], folder, "channel")
     box = data.get("box")
@@ -160,22 +163,22 @@ def written(data):
         elif isinstance(value, tuple) and value and isinstance(value[0], dict):
             sections += [_section(f"[[{key}]]", entry) for entry in value]
         else:
-            plain.append(f"{key} = {_inline(value)}\n")
+            plain.append(f"{key} = {inline(value)}\n")
     return "\n".join(["".join(plain), *sections])
 
 
 def _section(header, table):
-    return "".join([f"{header}\n", *(f"{key} = {_inline(value)}\n" for key, value in table.items())])
+    return "".join([f"{header}\n", *(f"{key} = {inline(value)}\n" for key, value in table.items())])
 
 
-def _inline(value):
-    """One TOML value: exact floats, text with every control character escaped."""
+def inline(value):
+    """One value as TOML: exact floats, text with every control character escaped."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key} = {_inline(entry)}" for key, entry in value.items()) + "}"
-    if isinstance(value, tuple):
-        return "[" + ", ".join(_inline(entry) for entry in value) + "]"
+        return "{" + ", ".join(f"{key} = {inline(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, tuple | list):
+        return "[" + ", ".join(inline(entry) for entry in value) + "]"
     return repr(value)

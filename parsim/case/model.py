@@ -220,6 +220,7 @@ def load(path, overrides=()):
     Raises InputError with every fault found.
     """
     data = replaced(read(Path(path)), overrides)
+    data.pop("study", None)  # varies cases and is part of none
     locate(data, Path(path).parent)
     return parse(data)
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from parsim.case import runs_table as tables
 from parsim.case.estimate import brief, lines
+from parsim.case.file import read
 from parsim.case.load import load
 from parsim.errors import InputError
 
@@ -13,6 +14,18 @@ def _check_ranks(case, ranks):
     from parsim.domain.grid import check_ranks  # brings numba along, whose settings a run makes first
 
     check_ranks(case, ranks)
+
+
+def _study(path, ranks):
+    """A line about the study that a case file holds, if it holds one."""
+    if "study" not in read(path):
+        return []
+    from parsim.study.study import checked  # brings numba along too
+
+    study, plans = checked(path, ranks)
+    rows = f"{len(plans)} row{'s' if len(plans) > 1 else ''}"
+    each = "a search" if study.bisection else f"{study.repeats} run{'s at most' if study.repeats > 1 else ''}"
+    return [f"study      {rows} with {each} in each, for `parsim study`"]
 
 
 def check_cases(
@@ -24,7 +37,8 @@ def check_cases(
         return
     case = load(path, changes, until)
     _check_ranks(case, ranks)
-    print(f"{path}: a valid case", *lines(case, ranks), sep="\n")
+    study = _study(Path(path), ranks)
+    print(f"{path}: a valid case", *lines(case, ranks), *study, sep="\n")
     for warning in case.warnings():
         print(f"warning: {warning}")
 

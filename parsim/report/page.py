@@ -12,6 +12,7 @@ h1 { font-size: 1.7rem; line-height: 1.25; margin-bottom: .3rem; }
 h2 { font-size: 1.2rem; margin-top: 2.4rem; border-bottom: 1px solid #cbd2d9; padding-bottom: .2rem; }
 p.lead { color: #52606d; margin-top: 0; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; margin: .8rem 0; }
+div.wide { overflow-x: auto; }
 th, td { text-align: left; padding: .3rem .7rem .3rem 0; border-bottom: 1px solid #e4e7eb; vertical-align: top; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 figure { margin: 1.2rem 0; break-inside: avoid; }
@@ -55,7 +56,7 @@ def table(titles: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
         return f"<tr>{''.join(cells)}</tr>"
 
     body = "\n".join(line("td", row) for row in rows)
-    return f"<table><thead>{line('th', titles)}</thead><tbody>\n{body}\n</tbody></table>"
+    return f'<div class="wide"><table><thead>{line("th", titles)}</thead><tbody>\n{body}\n</tbody></table></div>'
 
 
 def listing(items: Sequence[object], kind: str = "") -> str:

@@ -86,7 +86,7 @@ def _ends(run, until):
 
 
 def _check_wanted(folder, wanted, data):
-    changed = _changed(_flat(wanted), _flat(data))
+    changed = changed_keys(wanted, data)
     if changed:
         raise InputError(
             f"OUT = {folder}: is the run of another case, which differs in {', '.join(changed)}; give a "
@@ -109,14 +109,15 @@ def _end_of(path, data):
     except InputError as error:
         _warn(f"{message}; the case of the checkpoint holds" for message in error.messages)
         return data["run"]["until"]
-    kept = _flat(data)
-    changed = _changed(kept, noted)
+    changed = changed_keys(data, noted)
     if changed:
         _warn([f"{path}: {', '.join(changed)}: not as in the checkpoint, which holds; a changed case is another run"])
     return noted.get("run.until", data["run"]["until"])
 
 
-def _changed(one, other):
+def changed_keys(one: dict[str, Any], other: dict[str, Any]) -> list[str]:
+    """The keys in which two cases, nested dicts, differ, but for run.until."""
+    one, other = _flat(one), _flat(other)
     return [key for key in one | other if key != "run.until" and one.get(key) != other.get(key)]
 
 

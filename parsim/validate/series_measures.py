@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -120,12 +120,24 @@ def scaled(
     return (times - start) / time_unit, (np.nan_to_num(values, nan=dry) - zero) / unit
 
 
-def off_curve(run: Run, curve: list[list[float]], over: float | None = None, **column: Any) -> float:
+def off_curve(
+    run: Run,
+    series: str,
+    column: str,
+    curve: list[list[float]],
+    rows: Rows | None = None,
+    start: float = 0.0,
+    zero: float = 0.0,
+    time_unit: float = 1.0,
+    unit: float = 1.0,
+    dry: float = math.nan,
+    over: float | None = None,
+) -> float:
     """Root of the mean square of what a column of a series, `scaled`, is off a curve [[time, value], ...].
 
     Over the root of the mean square of the curve itself (Robb et al. 2016, eq. 13), or over `over`.
     """
-    times, values = scaled(run, **column)
+    times, values = scaled(run, series, column, rows, start, zero, time_unit, unit, dry)
     at, exact = np.array(curve, float).T
     off = np.interp(at, times, values) - exact
     return float(np.sqrt(np.mean(off * off)) / (np.sqrt(np.mean(exact * exact)) if over is None else over))

@@ -1,0 +1,175 @@
+"""What a study asks each finished run: functions of the run, with what `study.outcome` gives them.
+
+A function that returns a bool says yes or no by itself; a number does so by the keys above or below.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
+
+import numpy as np
+from pydantic import Field, Strict, create_model
+
+from parsim.case.types import CHOICE, Number, Real, Table, Whole, choice
+from parsim.errors import InputError, nearest, suggestion
+from parsim.observe.observers import TABLES
+from parsim.validate.measures import MEASURES
+
+if TYPE_CHECKING:
+    from parsim.output.reader import Run
+
+Text = Annotated[str, Strict()]
+_STRICT: dict[Any, Any] = {float: Real, int: Whole, str: Text}
+
+
+def last(run: Run, series: str, column: str, rows: dict[str, str] | None = None) -> float:
+    """Last value of a column of a series, of the rows where other columns are as told in `rows`."""
+    return float(_track(run, series, column, rows, -math.inf)[1][-1])
+
+
+def mean(run: Run, series: str, column: str, rows: dict[str, str] | None = None, after: float = 0.0) -> float:
+    """Mean of a column of a series from the time `after`, s, on, of the rows as told in `rows`."""
+    return float(_rows(run, series, column, rows, after)[1].mean())
+
+
+def maximum(run: Run, series: str, column: str, rows: dict[str, str] | None = None, after: float = 0.0) -> float:
+    """Largest value of a column of a series from the time `after`, s, on, of the rows as told in `rows`."""
+    return float(_rows(run, series, column, rows, after)[1].max())
+
+
+def minimum(run: Run, series: str, column: str, rows: dict[str, str] | None = None, after: float = 0.0) -> float:
+    """Smallest value of a column of a series from the time `after`, s, on, of the rows as told in `rows`."""
+    return float(_rows(run, series, column, rows, after)[1].min())
+
+
+def crossed(
+    run: Run, series: str, column: str, level: float, rows: dict[str, str] | None = None, after: float = 0.0
+) -> bool:
+    """Whether a column of a series gets past a level, or to it, from where it is at the time `after`, s."""
+    return not math.isnan(crossing_time(run, series, column, level, rows, after))
+
+
+def crossing_time(
+    run: Run, series: str, column: str, level: float, rows: dict[str, str] | None = None, after: float = 0.0
+) -> float:
+    """Time, s, at which a column of a series first gets to a level, between its rows by a straight line; else none."""
+    times, values = _track(run, series, column, rows, after)
+    ahead = (values - level) * (1.0 if values[0] < level else -1.0)  # negative until the level is reached
+    reached = np.flatnonzero(ahead >= 0.0)
+    if not reached.size:
+        return math.nan
+    at = reached[0]
+    if at == 0:
+        return float(times[0])
+    share = ahead[at - 1] / (ahead[at - 1] - ahead[at])
+    return float(times[at - 1] + share * (times[at] - times[at - 1]))
+
+
+def _rows(run, series, column, rows, after):
+    """(times, values) of a column where other columns are as told, both (rows,). Raises InputError where none are."""
+    read = run.series(series)
+    here = read["time"] >= after
+    for name, value in (rows or {}).items():
+        chosen = read[name].astype(str) == value
+        if not chosen.any():
+            there = ", ".join(np.unique(read[name].astype(str))) or "none"
+            raise InputError(f"rows.{name} = {value!r}: no such row in the series {series}; there are: {there}")
+        here &= chosen
+    if not here.any():
+        raise InputError(f"the series {series} has no row from t = {after:g} s on")
+    return read["time"][here], read[column][here]
+
+
+def _track(run, series, column, rows, after):
+    """As `_rows`, of one row for each time."""
+    times, values = _rows(run, series, column, rows, after)
+    if np.unique(times).size < times.size:
+        raise InputError(f'the series {series} has several rows at a time; tell one, as by rows = {{body = "A1"}}')
+    return times, values
+
+
+class Asked(Table):
+    """What all outcomes have in common."""
+
+    above: Number | None = Field(None, description="the outcome is yes where the number is larger; left out: a number")
+    below: Number | None = Field(None, description="the outcome is yes where the number is smaller")
+
+    @property
+    def decides(self) -> bool:
+        """Whether the outcome is yes or no."""
+        return _is_bool(self.function) or self.above is not None or self.below is not None
+
+    @property
+    def function(self) -> Callable[..., float | bool]:
+        """The function that is asked."""
+        return OUTCOMES[getattr(self, CHOICE)]
+
+    def of(self, run: Run) -> float | bool | None:
+        """The outcome of a finished run, None where it has none. Raises InputError where it cannot be asked."""
+        arguments = {name: value for name, value in self if name not in {CHOICE, "above", "below"}}
+        try:
+            value = self.function(run, **arguments)
+        except InputError as error:
+            raise InputError([f"{run.folder}: study.outcome: {message}" for message in error.messages]) from None
+        except (LookupError, ValueError, StopIteration) as error:
+            raise InputError(f"{run.folder}: study.outcome: {type(error).__name__}: {error}") from None
+        if isinstance(value, bool | np.bool_):
+            return bool(value)
+        if not math.isfinite(value):
+            return None
+        if not self.decides:
+            return value
+        return (self.above is None or value > self.above) and (self.below is None or value < self.below)
+
+    def faults(self, bodies: Sequence[str] | None) -> list[str]:
+        """What of series, columns and `bodies` (their names, None: any) a run would not know: a list of messages."""
+        told = []
+        if _is_bool(self.function) and not (self.above is None and self.below is None):
+            told.append(f"study.outcome: {getattr(self, CHOICE)} says yes or no by itself; leave above and below out")
+        series, rows = getattr(self, "series", None), getattr(self, "rows", None) or {}
+        if series is not None and series not in TABLES:
+            told.append(_unknown("series", series, TABLES))
+        elif series is not None:
+            columns = TABLES[series]
+            named = [("column", self.column), *((f"rows.{name}", name) for name in rows)]  # type: ignore[attr-defined]
+            told += [_unknown(key, name, columns) for key, name in named if name not in columns]
+        body = getattr(self, "body", rows.get("body"))
+        if bodies is not None and body is not None and body not in bodies:
+            told.append(_unknown("body" if hasattr(self, "body") else "rows.body", body, bodies))
+        return told
+
+
+def _is_bool(function):
+    return _hints(function)["return"] is bool
+
+
+def _unknown(key, name, known):
+    return (
+        f"study.outcome.{key} = {name!r}: there is no such one{suggestion(nearest(name, known))}; "
+        f"allowed: {', '.join(known) or 'none'}"
+    )
+
+
+def _hints(function):
+    return get_type_hints(function, localns={"Run": object})
+
+
+def _table(function):
+    """The table of `study.outcome` that asks for a function: its arguments are the keys."""
+    hints, told = _hints(function), (inspect.getdoc(function) or "").split("\n")[0]
+    fields: dict[str, Any] = {CHOICE: (Literal[function.__name__], Field(description=told))}
+    for name, parameter in list(inspect.signature(function).parameters.items())[1:]:
+        left_out = ... if parameter.default is parameter.empty else parameter.default
+        hint = hints[name]
+        fields[name] = (_STRICT.get(hint, hint), Field(left_out, description=f"of {function.__name__}: {told}"))
+    return create_model(f"Outcome_{function.__name__}", __base__=Asked, __doc__=told, **fields)
+
+
+OUTCOMES: dict[str, Callable[..., float | bool]] = {
+    function.__name__: function
+    for function in (last, mean, maximum, minimum, crossed, crossing_time, *MEASURES.values())
+}
+Outcome = choice(*map(_table, OUTCOMES.values()))

@@ -1,0 +1,130 @@
+"""The runs of a study in its folder: OUT/runs.csv numbers them, OUT/run-1, OUT/run-2, ... are their output folders."""
+
+from __future__ import annotations
+
+import csv
+import io
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from parsim.case import runs_table
+from parsim.case.load import load
+from parsim.case.model import Case
+from parsim.errors import InputError
+from parsim.output.frames import write_text
+from parsim.output.lock import held
+from parsim.output.reader import Run, is_output
+from parsim.run.resume import changed_keys
+from parsim.study.plan import Ended, Wanted
+from parsim.study.table import Study
+
+TABLE = "runs.csv"
+DONE, FAILED, RUNNING, STOPPED, WAITING = "done", "failed", "running", "stopped", "waiting"
+
+
+@dataclass
+class Seen:
+    """A run as it was last looked at: its number, 0 for one without; state; outcome, and in words what went wrong."""
+
+    number: int
+    state: str
+    outcome: float | bool | None = None
+    note: str = ""
+
+
+class Runs:
+    """All runs that the study in the case file `case` has in the folder `out`.
+
+    A run is known by its changes of the case, so that its number stays when the study asks for more. With `retry`
+    those that have failed count as not ended. Raises InputError where the folder is no study's.
+    """
+
+    def __init__(self, case: Path, study: Study, out: Path, retry: bool = False) -> None:
+        self.case, self.out, self._study, self._retry = case, out, study, retry
+        self._numbers: dict[tuple[str, ...], int] = {}
+        self._seen: dict[int, Seen] = {}
+        self._given_up: set[int] = set()
+        if is_output(out):
+            raise InputError(f"OUT = {out}: is the output folder of one run; give the study a folder of its own")
+        if (out / TABLE).is_file():
+            rows = runs_table.rows(out / TABLE)
+            self._numbers = {tuple(sorted(row)): number for number, row in enumerate(rows, 1)}
+        elif out.exists() and (not out.is_dir() or any(path.name != "lock" for path in out.iterdir())):
+            raise InputError(f"OUT = {out}: already there and not a study's, without {TABLE}; choose another folder")
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def folder(self, number: int) -> Path:
+        """The output folder of a run."""
+        return self.out / f"run-{number}"
+
+    def enter(self, wanted: list[Wanted]) -> list[int]:
+        """The number of each run; those that have none get the next ones, and a row of the table. Raises WriteError."""
+        new = [run.changes for run in wanted if _key(run) not in self._numbers]
+        for changes in new:
+            self._numbers.setdefault(tuple(sorted(changes)), len(self._numbers) + 1)
+        if new:
+            self.out.mkdir(parents=True, exist_ok=True)
+            write_text(self.out / TABLE, self._written())
+        return [self._numbers[_key(run)] for run in wanted]
+
+    def _written(self):
+        rows = [dict(change.split("=", 1) for change in key) for key in self._numbers]
+        keys = list(dict.fromkeys(name for row in rows for name in row))
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([keys, *([row.get(key, "") for key in keys] for row in rows)])
+        return text.getvalue()
+
+    def known(self, run: Wanted) -> Ended | None:
+        """How a run has ended; None: it has not."""
+        seen = self.seen(run)
+        if seen.state == DONE:
+            return Ended(seen.outcome)
+        failed = seen.state == FAILED and (not self._retry or seen.number in self._given_up)
+        return Ended(None) if failed or seen.number in self._given_up else None
+
+    def seen(self, run: Wanted) -> Seen:
+        """State and outcome of a run; what has ended is looked at once. Raises InputError for a run of another case."""
+        number = self._numbers.get(_key(run), 0)
+        if number not in self._seen or self._seen[number].state not in (DONE, FAILED):
+            self._seen[number] = self._look(number, run) if number else Seen(0, WAITING)
+        return self._seen[number]
+
+    def forget(self, number: int, give_up: bool = False) -> None:
+        """Look at a run again; `give_up`: it is not to be started any more by this command."""
+        self._seen.pop(number, None)
+        if give_up:
+            self._given_up.add(number)
+
+    def _look(self, number, wanted):
+        folder = self.folder(number)
+        if not is_output(folder):
+            return Seen(number, WAITING)
+        run, case = Run(folder), load(self.case, wanted.changes)
+        self._check(run, case)
+        info = run.info
+        status = info.get("status")
+        if status == "done" and info.get("time", 0.0) >= case.run.until:
+            outcome = self._study.outcome.of(run)
+            return Seen(number, DONE, outcome, "" if outcome is not None else "has no outcome")
+        if status == "failed":
+            return Seen(number, FAILED, note=str(info.get("error", "")))
+        return Seen(number, RUNNING if held(folder) else STOPPED)
+
+    def _check(self, run: Run, case: Case) -> None:
+        try:
+            there = run.case
+        except (OSError, tomllib.TOMLDecodeError):
+            there = {}
+        changed = changed_keys(there, tomllib.loads(case.to_toml())) if there else []
+        if changed:
+            raise InputError(
+                f"{run.folder}: is the run of another case, which differs in {', '.join(changed)}; give the study of "
+                "a changed case a folder of its own"
+            )
+
+
+def _key(run):
+    return tuple(sorted(run.changes))
