@@ -6,10 +6,10 @@ import csv
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    import numpy as np
 
     from parsim.output.reader import Run
 

@@ -75,7 +75,7 @@ def _first(times: np.ndarray, values: np.ndarray, value: float) -> float:
 def period_of(run: Run, series: str, column: str, zero: float, rows: Rows | None = None) -> float:
     """Period, s, of a swing about `zero`: twice the mean time between the times at which a column is there."""
     times, values = _column(run, series, column, rows)
-    crossed = np.flatnonzero((values[:-1] - zero) * (values[1:] - zero) < 0.0)
+    crossed = np.flatnonzero(np.diff(values < zero))
     share = (zero - values[crossed]) / (values[crossed + 1] - values[crossed])
     at = times[crossed] + share * (times[crossed + 1] - times[crossed])
     return float(2.0 * np.diff(at).mean()) if at.size > 1 else math.nan
@@ -84,7 +84,7 @@ def period_of(run: Run, series: str, column: str, zero: float, rows: Rows | None
 def damping_of(run: Run, series: str, column: str, zero: float, rows: Rows | None = None) -> float:
     """Damping over the critical one, by the logarithm of the first three half swings about `zero` in turn."""
     values = _column(run, series, column, rows)[1] - zero
-    crossed = np.flatnonzero(values[:-1] * values[1:] < 0.0)
+    crossed = np.flatnonzero(np.diff(values < 0.0))
     tops = [np.abs(half).max() for half in np.split(values, crossed + 1)[:4]]
     loss = math.log(tops[0] / tops[-1]) / (len(tops) - 1)  # of half a period
     return float(loss / math.hypot(loss, math.pi))
@@ -95,7 +95,7 @@ def noise_of(
 ) -> float:
     """Root of the mean square of what a column is off its own running mean over a width, s, between two times, s."""
     times, values = _column(run, series, column, rows)
-    half = max(int(0.5 * width / np.median(np.diff(times))), 1)
+    half = max(round(0.5 * width / np.median(np.diff(times))), 1)
     smooth = np.convolve(values, np.ones(2 * half + 1) / (2 * half + 1), "same")
     here = (times >= after) & (times <= before)
     return float(np.sqrt(np.mean((values - smooth)[here] ** 2)) / over)
