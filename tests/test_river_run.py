@@ -17,6 +17,7 @@ from parsim.report.sections import river as section
 from parsim.river.arches import arches, at_pier
 from parsim.river.reader import River, river_of
 from parsim.river.verdicts import blocks, on_the_bed, pairs, verdict
+from parsim.study.outcomes import block_goes_under, jam_forms, jam_holds
 
 VOLUME = math.prod(FLOE)
 
@@ -163,6 +164,17 @@ def test_the_page_of_a_plane_has_its_block(covered):
 def test_a_case_that_asks_for_nothing_has_no_such_section():
     run = SimpleNamespace(case={"title": "x"}, series_names=["bodies"])
     assert section.parts(SimpleNamespace(run=run)) == "" and section.lines(run) == []
+
+
+def test_a_study_asks_for_jams_and_blocks(channel, covered):
+    assert jam_forms(channel.run) is True and jam_holds(channel.run) is True
+    assert block_goes_under(covered.run, "block") is True
+    with pytest.raises(InputError, match="body = 'lid': no block that drifts"):
+        block_goes_under(covered.run, "lid")
+    with pytest.raises(InputError, match="looks for no jam"):
+        jam_forms(covered.run)
+    with pytest.raises(InputError, match="has no table measure"):
+        jam_forms(SimpleNamespace(case={}))
 
 
 def test_a_run_is_measured_once(channel):

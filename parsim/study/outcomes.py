@@ -16,6 +16,8 @@ from pydantic import Field, Strict, create_model
 from parsim.case.types import CHOICE, Number, Real, Table, Whole, choice
 from parsim.errors import InputError, nearest, suggestion
 from parsim.observe.observers import TABLES
+from parsim.river import verdicts
+from parsim.river.reader import river_of
 from parsim.validate.measures import MEASURES
 
 if TYPE_CHECKING:
@@ -66,6 +68,38 @@ def crossing_time(
         return float(times[0])
     share = ahead[at - 1] / (ahead[at - 1] - ahead[at])
     return float(times[at - 1] + share * (times[at] - times[at - 1]))
+
+
+def jam_forms(run: Run) -> bool:
+    """Whether ice has jammed, as the table `measure.jam` of the case says."""
+    return _verdict(run).jam is not None
+
+
+def jam_holds(run: Run) -> bool:
+    """Whether ice has jammed and stays so for three times the time that makes a jam."""
+    found = _verdict(run).jam
+    return found is not None and found.lasts == "held"
+
+
+def block_goes_under(run: Run, body: str) -> bool:
+    """Whether a block has not stayed at the edge of the cover, `measure.cover`: it turned under, sank or passed."""
+    known = verdicts.blocks(_river(run))
+    if body not in known:
+        raise InputError(f"body = {body!r}: no block that drifts to a cover, measure.cover")
+    return known[body].critical
+
+
+def _verdict(run):
+    found = verdicts.verdict(_river(run))
+    if found is None:
+        raise InputError("the case looks for no jam; it needs measure.jam, and ice that is free")
+    return found
+
+
+def _river(run):
+    if run.case.get("measure") is None:
+        raise InputError("the case has no table measure")
+    return river_of(run)
 
 
 def _rows(run, series, column, rows, after):
@@ -170,6 +204,17 @@ def _table(function):
 
 OUTCOMES: dict[str, Callable[..., float | bool]] = {
     function.__name__: function
-    for function in (last, mean, maximum, minimum, crossed, crossing_time, *MEASURES.values())
+    for function in (
+        last,
+        mean,
+        maximum,
+        minimum,
+        crossed,
+        crossing_time,
+        jam_forms,
+        jam_holds,
+        block_goes_under,
+        *MEASURES.values(),
+    )
 }
 Outcome = choice(*map(_table, OUTCOMES.values()))
