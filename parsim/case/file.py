@@ -26,12 +26,18 @@ def read(path, inside=()):
 
 
 def locate(data, folder):
-    """Make the paths of files that bodies name whole: they count from where the case is."""
-    bodies = data.get("bodies")
-    for body in bodies if isinstance(bodies, list) else ():
-        shape = body.get("shape") if isinstance(body, dict) else None
-        if isinstance(shape, dict) and isinstance(shape.get("file"), str):
-            shape["file"] = str((folder / shape["file"]).resolve())
+    """Make the paths of files that bodies and laws of ice name whole: they count from where the case is."""
+    ice = data.get("ice")
+    named = [body.get("shape") for body in _tables(data.get("bodies"))]
+    named += [law for field in _tables(ice.get("fields") if isinstance(ice, dict) else None) for law in field.values()]
+    for table in named:
+        if isinstance(table, dict) and isinstance(table.get("file"), str):
+            table["file"] = str((folder / table["file"]).resolve())
+
+
+def _tables(entries):
+    """The tables in what should be a list of them."""
+    return [entry for entry in entries if isinstance(entry, dict)] if isinstance(entries, list) else []
 
 
 def _parsed(path):

@@ -16,6 +16,7 @@ from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
 from parsim.case.file import locate, read, replaced, written
 from parsim.case.friction import Eddies, Friction
+from parsim.case.ice import Ice
 from parsim.case.messages import validated
 from parsim.case.output import Output, Report
 from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
@@ -153,6 +154,7 @@ class Case(Table):
     report: Report = Field(Report(), description="what the page of the run shows")
     materials: dict[Name, Material] = Field({}, description="materials by name")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies")
+    ice: Ice = Field(Ice(), description="floes by laws")
     joints: tuple[Joint, ...] = Field((), description="what ties bodies to the world")
 
     @property

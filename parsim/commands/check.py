@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from parsim.case import ice
 from parsim.case import runs_table as tables
 from parsim.case.estimate import brief, lines
 from parsim.case.load import load
@@ -24,7 +25,7 @@ def check_cases(
         return
     case = load(path, changes, until)
     _check_ranks(case, ranks)
-    print(f"{path}: a valid case", *lines(case, ranks), sep="\n")
+    print(f"{path}: a valid case", *lines(case, ranks), *ice.told(case), sep="\n")
     for warning in case.warnings():
         print(f"warning: {warning}")
 

@@ -46,7 +46,7 @@ def settle(own: Outlines, start: Settled, fixed: Outlines, region: Region, gap: 
     drift = [np.zeros(n)] * 3
     far, pairs, best = np.inf, (np.zeros(0, int),) * 2, start
     least = np.inf
-    for turn in range(rounds):
+    for done in range(rounds):
         there = joined(moved(own, x, y, cos, sin), fixed)
         if far > 0.5 * skin:
             pairs, far = near(there, goal + skin), 0.0
@@ -54,7 +54,7 @@ def settle(own: Outlines, start: Settled, fixed: Outlines, region: Region, gap: 
         lack, push = _pushes(there, pairs, light, swing, region, goal, more, n)
         if not (lack > more).any():
             return Settled(x, y, cos, sin, np.zeros(n))
-        if turn % _LOOK == 0:
+        if done % _LOOK == 0:
             if (total := float(lack.sum())) > _FALL * least:
                 break
             least = total
@@ -73,7 +73,7 @@ def _pushes(there, pairs, light, swing, region, goal, more, n):
     """(What each of n floes lacks of the goal, (n,), m; by how much to move and turn it: three arrays (n,))."""
     i, j = pairs
     dx, dy = there.cx[j] - there.cx[i], there.cy[j] - there.cy[i]
-    close = (dx * dx + dy * dy < (there.radius[i] + there.radius[j] + goal) ** 2)
+    close = dx * dx + dy * dy < (there.radius[i] + there.radius[j] + goal) ** 2
     i, j = i[close], j[close]
     found = gaps(there.take(i), there.take(j))
     short = goal - found.apart
@@ -83,10 +83,13 @@ def _pushes(there, pairs, light, swing, region, goal, more, n):
     arms = [(px - there.cx[k]) * ny - (py - there.cy[k]) * nx for k in (i, j)]
     give = light[i] + light[j] + arms[0] ** 2 * swing[i] + arms[1] ** 2 * swing[j]
     push = short / give
-    rows, parts = [i, j], [
-        (-push * light[i] * nx, -push * light[i] * ny, -push * arms[0] * swing[i], short),
-        (push * light[j] * nx, push * light[j] * ny, push * arms[1] * swing[j], short),
-    ]
+    rows, parts = (
+        [i, j],
+        [
+            (-push * light[i] * nx, -push * light[i] * ny, -push * arms[0] * swing[i], short),
+            (push * light[j] * nx, push * light[j] * ny, push * arms[1] * swing[j], short),
+        ],
+    )
     for part in _off_the_rim(there, light, swing, region, more, n):
         rows.append(part[0])
         parts.append(part[1:])
@@ -102,7 +105,7 @@ def _pushes(there, pairs, light, swing, region, goal, more, n):
 def _off_the_rim(there, light, swing, region, more, n):
     """The same parts for floes that reach out of the region: row, moves, turn and lack."""
     rows = np.arange(n)
-    for axis, (corner, centre) in enumerate(((there.x, there.cx), (there.y, there.cy))):
+    for axis, corner in enumerate((there.x, there.y)):
         for sign, level in ((1.0, region.low[axis]), (-1.0, region.high[axis])):
             deepest = (sign * corner[:n]).argmin(axis=1)
             lack = sign * level + more - sign * corner[rows, deepest]
