@@ -67,6 +67,8 @@ def doubts(case):
 
 def _completed(case):
     """(`case` with the values filled in that depend on other keys, messages)."""
+    if case.gate and case.gate.bottom is None:
+        case = case.model_copy(update={"gate": case.gate.model_copy(update={"bottom": case.box.min[2]})})
     floated, faults = _all_floated(case, repeats.every(case))
     case, wrong = ice.with_floes(case.model_copy(update={"bodies": floated}))
     floes, unfloated = _all_floated(case, case.bodies[len(floated) :])
@@ -77,8 +79,6 @@ def _completed(case):
         for s in case.output.sensors
     )
     update = {"bodies": (*floated, *floes), "output": case.output.model_copy(update={"sensors": sensors})}
-    if case.gate and case.gate.bottom is None:
-        update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})
     if not case.water.fill and not {"scheme", "speed"} & case.water.model_fields_set:
         update["water"] = case.water.model_copy(update={"scheme": DRY})
     if case.spacing is None and not update.get("water", case.water).scheme.WET:

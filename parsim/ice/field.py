@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from parsim.ice.draw import Laws
 
 MOST = 100_000  # floes of a field
-_SPREAD = 2  # part of a floe's counter
+_SPREAD = 8  # part of a floe's counter, the first of those for attempts
+_ATTEMPTS, _WORK = 10, 8000  # at most, and for so many floes a second one
 _SHARE, _TRIES = 0.4, 20  # of the plan that scattered floes, shrunk for it, cover; places looked at for each
 _ROUNDS = {"box": 2000, "disc": 2000, "polygon": 150}  # polygons are cut from a cover then
 _ROUNDING = 1e-7  # of the size of floes
@@ -44,7 +45,9 @@ def covering(area: float, seed: int, stream: int, laws: Laws) -> list[Floe]:
     return floes
 
 
-def spread(floes: Sequence[Floe], region: Region, fixed: Outlines, gap: float) -> list[Placed] | None:
+def spread(
+    floes: Sequence[Floe], region: Region, fixed: Outlines, gap: float, attempts: int = _ATTEMPTS
+) -> list[Placed] | None:
     """Places for all floes in a region, a gap from each other and from what is `fixed`; None where none were found.
 
     The largest first, each where there is room (random sequential addition). Where that ends, all are scattered anew
@@ -52,27 +55,18 @@ def spread(floes: Sequence[Floe], region: Region, fixed: Outlines, gap: float) -
     """
     order = sorted(floes, key=lambda floe: (-floe.area, floe.key))
     found = _one_by_one(order, region, fixed, gap)
-    if found is None:
-        own = outlines([floe.outline for floe in order], [floe.round for floe in order])
-        start = _scattered(order, own, region, fixed)
-        settled = settle(own, start, fixed, region, gap, _ROUNDS[order[0].shape])
-        found = [
-            Placed(floe, Pose(float(x), float(y), math.atan2(s, c)))
-            for floe, x, y, c, s, _ in zip(order, *settled, strict=True)
-        ]
-        if settled.lack.any() and order[0].shape == "polygon":
-            sites = np.stack([settled.x, settled.y], 1)
-            cells = cut(sites, np.array([floe.area for floe in order]), fixed, region, gap)
-            found = found if cells is None else [_cell(*one) for one in zip(order, cells, strict=True)]
-    found = [Placed(floe, _rounded(pose, floe.size)) for floe, pose in found]
-    return sorted(found, key=lambda one: one.floe.key) if _clear(found, region, fixed, gap) else None
+    for attempt in range(0 if found else min(attempts, 1 + _WORK // len(order))):
+        found = _all_at_once(order, region, fixed, gap, attempt)
+        if found is not None:
+            break
+    return found and sorted(found, key=lambda one: one.floe.key)
 
 
 def room_for(floes: Sequence[Floe], region: Region, fixed: Outlines, gap: float) -> float:
     """The area of as many of the floes, the first ones, as room is found for, to a twentieth of them; 0 if of none."""
     for part in range(19, 0, -1):
         some = floes[: len(floes) * part // 20]
-        if some and spread(some, region, fixed, gap) is not None:
+        if some and spread(some, region, fixed, gap, 1) is not None:
             return sum(floe.area for floe in some)
     return 0.0
 
@@ -101,15 +95,35 @@ def _one_by_one(order, region, fixed, gap):
         pose = place(floe, taken)
         if pose is None:
             return None
-        found.append(Placed(floe, pose))
+        found.append(Placed(floe, _rounded(pose, floe.size)))
     return found
 
 
-def _scattered(order, own, region, fixed):
+def _all_at_once(order, region, fixed, gap, attempt):
+    """All floes scattered and pushed apart, or cut; None where that is not enough."""
+    own = outlines([floe.outline for floe in order], [floe.round for floe in order])
+    start = _scattered(order, own, region, fixed, attempt)
+    settled = settle(own, start, fixed, region, gap, _ROUNDS[order[0].shape])
+    if not settled.lack.any():
+        poses = [Pose(float(x), float(y), math.atan2(s, c)) for x, y, c, s, _ in zip(*settled, strict=True)]
+        found = [Placed(*one) for one in zip(order, poses, strict=True)]
+    elif order[0].shape == "polygon":
+        sites = np.stack([settled.x, settled.y], 1)
+        cells = cut(sites, np.array([floe.area for floe in order]), fixed, region, gap)
+        if cells is None:
+            return None
+        found = [_cell(*one) for one in zip(order, cells, strict=True)]
+    else:
+        return None
+    found = [Placed(floe, _rounded(pose, floe.size)) for floe, pose in found]
+    return found if _clear(found, region, fixed, gap) else None
+
+
+def _scattered(order, own, region, fixed, attempt):
     """Floes where discs of their areas, all shrunk until there is room, find some; turned at random."""
     width, height = (high - low for low, high in zip(*region, strict=True))
     shrunk = min(1.0, math.sqrt(_SHARE * width * height / sum(floe.area for floe in order)))
-    dice = np.array([evenly(floe.key, _SPREAD, 3 * _TRIES) for floe in order]).reshape(-1, _TRIES, 3)
+    dice = np.array([evenly(floe.key, _SPREAD + attempt, 3 * _TRIES) for floe in order]).reshape(-1, _TRIES, 3)
     inner = np.minimum(own.radius, 0.5 * min(width, height))[:, None]
     x, y = (region.low[a] + inner + dice[:, :, a] * (size - 2.0 * inner) for a, size in enumerate((width, height)))
     open_ = ~_blocked(x, y, fixed)
