@@ -131,7 +131,9 @@ def test_gaps_in_plain_cases():
     assert (found.nx[0], found.ny[0]) == pytest.approx((1.0, 0.0))
     assert (found.nx[2], found.ny[2]) == pytest.approx((0.0, -1.0)), "from the first to the second"
     assert sorted(zip(*(rows.tolist() for rows in near(there, 0.0)), strict=True)) == []
-    assert {frozenset(p) for p in zip(*(r.tolist() for r in near(there, 0.35)), strict=True)} == {frozenset(p) for p in ((0, 1), (1, 2))}
+    assert {frozenset(p) for p in zip(*(r.tolist() for r in near(there, 0.35)), strict=True)} == {
+        frozenset(p) for p in ((0, 1), (1, 2))
+    }
 
 
 def test_cells_hold_their_areas():
