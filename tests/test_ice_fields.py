@@ -4,6 +4,7 @@ import math
 import subprocess
 import sys
 import tomllib
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -204,7 +205,7 @@ def test_floes_in_a_row(share):
     case = parse(plane({"concentration": share * 0.88, "gap": 0.005}, bodies=[wall]))
     floes = sorted(case.bodies, key=lambda body: body.position[0])
     ends = [(b.position[0] - b.shape.half[0], b.position[0] + b.shape.half[0]) for b in floes]
-    assert all(low - high >= 0.005 - 1e-8 for (_, high), (low, _) in zip(ends, ends[1:], strict=False))
+    assert all(low - high >= 0.005 - 1e-8 for (_, high), (low, _) in pairwise(ends))
     lengths = [b.shape.size[0] for b in case.bodies[1:]]
     assert sum(lengths) == pytest.approx(share * 0.88 * 2.0, abs=max(lengths))
     assert all(b.shape.size[1] == 1.0 and b.position[1] == 0.5 and not any(b.angles) for b in case.bodies)

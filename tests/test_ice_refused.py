@@ -21,20 +21,20 @@ WRONG = {
                     "size.kind = 'lognorml': must be 'list', 'uniform', 'lognormal', 'power' or 'histogram' (one of "
                     "'list', 'uniform', 'lognormal', 'power', 'histogram'); did you mean lognormal?"),
     "no law": ({"size": {"median": 0.2}}, {}, "ice.fields.ice.size.kind: missing; one of 'list'"),
-    "law of thickness for a size": ({"size": {"kind": "ratio", "ratio": 0.1}}, {}, "size.kind = 'ratio': must be 'list'"),
+    "law of thickness for a size": ({"size": {"kind": "ratio", "ratio": 0.1}}, {}, "size.kind = 'ratio': must be"),
     "key of another law": ({"size": LOG | {"exponent": 2.0}}, {}, "size.exponent: belongs to kind = 'power'"),
     "misspelt key of a law": ({"size": {"kind": "uniform", "min": 0.1, "maxx": 0.2}}, {},
                               "size.maxx: unknown key; did you mean ice.fields.ice.size.max?"),
-    "negative size": ({"size": -0.2}, {}, "size.values.0 = -0.2: must be at least 1e-09"),
+    "negative size": ({"size": -0.2}, {}, "ice.fields.ice.size = -0.2: must be at least 1e-09 (size, m"),
     "text for a law": ({"size": "large"}, {}, "ice.fields.ice.size = 'large': must be a table"),
     "limits swapped": ({"size": LOG | {"min": 0.5}}, {}, "size.min = 0.5: must not be greater than max = 0.4"),
     "negative sigma": ({"size": LOG | {"sigma": -1.0}}, {}, "size.sigma = -1.0: must be greater than 0"),
-    "shares": ({"size": {"kind": "list", "values": [0.1, 0.2], "shares": [0.5, 0.6]}}, {}, "their sum is 1.1; must be 1"),
-    "negative share": ({"size": {"kind": "list", "values": [0.1], "shares": [-1.0]}}, {}, "shares.0 = -1.0: must be at l"),
-    "no file": ({"size": {"kind": "histogram", "file": "/none.csv"}}, {}, "size: file = '/none.csv': cannot be read: No"),
+    "shares": ({"size": {"kind": "list", "values": [0.1, 0.2], "shares": [0.5, 0.6]}}, {}, "their sum is 1.1; must"),
+    "negative share": ({"size": {"kind": "list", "values": [0.1], "shares": [-1.0]}}, {}, "shares.0 = -1.0: must be"),
+    "no file": ({"size": {"kind": "histogram", "file": "/none.csv"}}, {}, "size: file = '/none.csv': cannot be read"),
     "thickness by area": ({"thickness": {"kind": "uniform", "min": 0.05, "max": 0.1, "weight": "area"}}, {},
                           'thickness.weight = "area": is for size'),
-    "aspect below 1": ({"aspect": {"kind": "uniform", "min": 0.5, "max": 2.0}}, {}, "aspect: reaches down to 0.5; must"),
+    "aspect below 1": ({"aspect": {"kind": "uniform", "min": 0.5, "max": 2.0}}, {}, "aspect: reaches down to 0.5"),
     "aspect of discs": ({"aspect": 1.5, "shape": "disc"}, {}, "aspect: discs have none; leave it out"),
     "unknown shape": ({"shape": "polygn"}, {}, "shape = 'polygn': must be 'box', 'disc' or 'polygon' (what the floes "
                                                "are; in 2D box); did you mean polygon?"),
@@ -46,10 +46,10 @@ WRONG = {
     "two levels": ({}, STEPS, "the water beneath is at levels from 0.1 to 0.2; must be at one"),
     "too shallow": ({"density": 990.0}, SHALLOW, "a draught of 0.0594 m, more than the depth of water there, 0.04 m"),
     "sinks": ({"density": 1000.0}, {}, "density = 1000.0: does not float; must be below that of the water, 1000.0"),
-    "unknown material": ({"material": "ics"}, {}, 'ice.fields.ice.material = "ics": no such material; allowed: ice; did'),
+    "unknown material": ({"material": "ics"}, {}, 'ice.fields.ice.material = "ics": no such material; allowed: ice'),
     "supersonic": ({"velocity": [0.0, 90.0, 0.0]}, {}, "velocity = [0.0, 90.0, 0.0]: must be slower than the sound"),
     "too large": ({"size": 1.5}, {}, "floes do not fit into the rectangle, the largest of 1.5 m into 2.38 by 0.98 m"),
-    "too thin": ({"thickness": 0.02}, {}, "floes are thinner than two particles at spacing = 0.02, the thinnest 0.02 m"),
+    "too thin": ({"thickness": 0.02}, {}, "floes are thinner than two particles at spacing = 0.02, the thinnest 0.02"),
     "too narrow": ({"size": 0.1, "aspect": 6.0, "shape": "box"}, {}, "thinner than two particles"),
     "too little": ({"size": 0.9, "concentration": 0.01}, {}, "asks for 0.024 m2, less than half of the first floe"),
     "too many": ({"size": 0.0005}, {}, "size: more than 100000 floes cover 1.2 m2"),
@@ -57,7 +57,7 @@ WRONG = {
     "no room is left of it": ({"max": [0.01, 1.0], "size": 0.05}, {}, "nothing of the rectangle is left"),
     "floes that are not there": ({"floes": 3}, {}, "floes = 3: there are 0 bodies ice_1 to ice_3; leave floes out"),
     "long name": ({"name": LONG}, {}, f"ice.fields.{LONG}.name: 60 letters; at most 56"),
-    "unknown key": ({"concentrtion": 0.4}, {}, "ice.fields.ice.concentrtion: unknown key; did you mean ice.fields.ice.c"),
+    "unknown key": ({"concentrtion": 0.4}, {}, "ice.fields.ice.concentrtion: unknown key; did you mean ice.fields"),
 }  # fmt: skip
 
 
@@ -110,7 +110,8 @@ def test_files_of_laws_are_found_beside_the_case(tmp_path):
         'dimensions = 3', "spacing = 0.02", "[box]", "max = [2.4, 1.0, 0.4]", "[water]",
         "fill = [{min = [0.0, 0.0, 0.0], max = [2.4, 1.0, 0.2]}]", "[materials.ice]",
         *(f"{key} = {value}" for key, value in BASIN["materials"]["ice"].items()), "[[ice.fields]]", 'name = "ice"',
-        "min = [0.0, 0.0]", "max = [2.4, 1.0]", "concentration = 0.3", 'size = {kind = "histogram", file = "sizes.csv"}',
+        "min = [0.0, 0.0]", "max = [2.4, 1.0]", "concentration = 0.3",
+        'size = {kind = "histogram", file = "sizes.csv"}',
         "thickness = 0.06", "density = 900", 'material = "ice"', "[run]", "until = 0.1"])  # fmt: skip
     (tmp_path / "case.toml").write_text(text)
     case = load(tmp_path / "case.toml")
