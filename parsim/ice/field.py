@@ -127,7 +127,8 @@ def _scattered(order, own, region, fixed, attempt):
     inner = np.minimum(own.radius, 0.5 * min(width, height))[:, None]
     x, y = (region.low[a] + inner + dice[:, :, a] * (size - 2.0 * inner) for a, size in enumerate((width, height)))
     open_ = ~_blocked(x, y, fixed)
-    cell, cells, places = 2.0 * shrunk * order[0].size, {}, []
+    cells: dict[tuple[int, int], list[tuple[float, float, float]]] = {}
+    cell, places = 2.0 * shrunk * order[0].size, []
     for number, floe in enumerate(order):
         radius, spot = shrunk * math.sqrt(floe.area / math.pi), int(np.argmax(open_[number]))
         for at in np.flatnonzero(open_[number]):
@@ -164,7 +165,7 @@ def _cell(floe, corners):
     cross = (x - x[0]) * (q - y[0]) - (p - x[0]) * (y - y[0])
     centre = [float(u[0] + ((u + w - 2.0 * u[0]) * cross).sum() / (3.0 * cross.sum())) for u, w in ((x, p), (y, q))]
     outline = np.array([[rounded(v, floe.size) for v in corner] for corner in (corners - centre).tolist()])
-    return Placed(floe._replace(outline=outline), Pose(*centre, 0.0))
+    return Placed(floe._replace(outline=outline), Pose(centre[0], centre[1], 0.0))
 
 
 def _rounded(pose, size):

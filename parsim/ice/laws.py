@@ -174,7 +174,8 @@ class Histogram(LawTable):
         classes = list(itertools.pairwise(self.edges))
         parts = [s * _moment(a, b, power) / (b - a) for s, (a, b) in zip(self.shares, classes, strict=True)]
         number, rest = _chosen(parts, share)
-        return _power_law(rest, *classes[number], power)
+        low, high = classes[number]
+        return _power_law(rest, low, high, power)
 
 
 class Ratio(Table):
@@ -219,8 +220,8 @@ def _as_law(value):
 
 
 LAWS = (Listed, Uniform, Lognormal, Power, Histogram)
-Law = Annotated[choice(*LAWS), OrNumber()]
-Thickness = Annotated[choice(*LAWS, Ratio), OrNumber()]
+Law: Any = Annotated[choice(*LAWS), OrNumber()]
+Thickness: Any = Annotated[choice(*LAWS, Ratio), OrNumber()]
 
 
 def _chosen(parts, share):

@@ -12,8 +12,6 @@ from parsim.ice.draw import evenly
 from parsim.ice.outlines import Outlines, gaps, moved, outlines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from parsim.ice.draw import Floe
 
 TRIES = 50  # places looked at for a floe
@@ -65,14 +63,14 @@ class Taken:
                 unsure.append(row)
         return all((gaps(own, self._there[row]).apart >= self.gap).all() for row in sorted(unsure))
 
-    def _over(self, box, margin) -> Iterator[tuple[int, int]]:
+    def _over(self, box, margin):
         """Cells that a box (x, y, x, y) and a margin around it reach into, of those that the region has."""
         ranges = []
         for axis in (0, 1):
             low = max(box[axis] - margin, self.region.low[axis]) - self.region.low[axis]
             high = min(box[axis + 2] + margin, self.region.high[axis]) - self.region.low[axis]
             ranges.append(range(math.floor(low / self._cell), math.floor(high / self._cell) + 1))
-        return itertools.product(*ranges)
+        return list(itertools.product(*ranges))
 
 
 def place(floe: Floe, taken: Taken, tries: int = TRIES) -> Pose | None:
@@ -100,7 +98,7 @@ def somewhere(own: Outlines, region: Region, dice: tuple[float, float, float]) -
         if low > high:
             return None
         centre.append(low + dice[axis] * (high - low))
-    return Pose(*centre, turn)
+    return Pose(centre[0], centre[1], turn)
 
 
 def at(own: Outlines, pose: Pose) -> Outlines:

@@ -49,8 +49,9 @@ def settle(own: Outlines, start: Settled, fixed: Outlines, region: Region, gap: 
     for done in range(rounds):
         there = joined(moved(own, x, y, cos, sin), fixed)
         if far > 0.5 * skin:
-            pairs, far = near(there, goal + skin), 0.0
-            pairs = tuple(rows[(pairs[0] < n) | (pairs[1] < n)] for rows in pairs)
+            i, j = near(there, goal + skin)
+            some, far = (i < n) | (j < n), 0.0
+            pairs = i[some], j[some]
         lack, push = _pushes(there, pairs, light, swing, region, goal, more, n)
         if not (lack > more).any():
             return Settled(x, y, cos, sin, np.zeros(n))
