@@ -21,7 +21,7 @@ from parsim.ice.row import row
 
 GAP = 0.5  # spacings, between floes and to all else, where no gap is given
 SQUARE = Listed(kind="list", values=(1.0,))
-Ends = Annotated[tuple[Number, ...], Field(min_length=1, max_length=2)]
+Ends = Annotated[tuple[Number, ...], Field(max_length=2)]
 
 
 class IceField(Table):
@@ -111,7 +111,7 @@ def _spread(case, field, taken, made):
     laws = Laws(field.shape, field.size, field.thickness, field.aspect or SQUARE, case.dimensions)
     asked, region = field.concentration * rectangle(field), _region(case, field, gap)
     floes = covering(asked, field.seed, stream_of(f"ice.fields.{field.name}"), laws)
-    if len(floes) > MOST:
+    if floes is None:
         raise InputError(f"size: more than {MOST} floes cover {asked:.6g} m2; make them larger or the field smaller")
     ice_faults.check_sizes(case, field, floes, region)
     share = field.density / case.water.density

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from parsim.ice.draw import Laws
 
-MOST = 100_000  # floes of a field
+MOST, _MANY = 100_000, 1000  # floes of a field; after so many it is seen whether they will be more
 _SPREAD = 8  # part of a floe's counter, the first of those for attempts
 _ATTEMPTS, _WORK = 10, 8000  # at most, and for so many floes a second one
 _SHARE, _TRIES = 0.4, 20  # of the plan that scattered floes, shrunk for it, cover; places looked at for each
@@ -33,16 +33,18 @@ class Placed(NamedTuple):
     pose: Pose
 
 
-def covering(area: float, seed: int, stream: int, laws: Laws) -> list[Floe]:
-    """The first floes of a stream, as many as come nearest to this area; at least one, at most one more than MOST."""
+def covering(area: float, seed: int, stream: int, laws: Laws) -> list[Floe] | None:
+    """The first floes of a stream, as many as come nearest to this area, at least one; None if more than MOST would."""
     floes: list[Floe] = []
     total = 0.0
     for floe in drawn(seed, stream, laws):
-        if floes and (total + 0.5 * floe.area > area or len(floes) > MOST):
-            break
+        if floes and total + 0.5 * floe.area > area:
+            return floes
         floes.append(floe)
         total += floe.area
-    return floes
+        if len(floes) % _MANY == 0 and total * MOST < len(floes) * area:
+            break
+    return None
 
 
 def spread(

@@ -54,12 +54,14 @@ class Listed(LawTable):
     """Some values, each with its share."""
 
     kind: Literal["list"] = Field(description="some values, each with its share")
-    values: Annotated[tuple[Moderate, ...], Field(min_length=1)] = Field(description="values")
+    values: tuple[Moderate, ...] = Field(description="values")
     shares: tuple[Share, ...] | None = Field(None, description="share of each, together 1; left out: the same of all")
 
     def faults(self) -> Iterator[str]:
         """See `LawTable`."""
-        if self.shares is not None:
+        if not self.values:
+            yield "values = []: must be at least one"
+        elif self.shares is not None:
             yield from _faults_of_shares(self.shares, len(self.values), f"{len(self.values)} values")
 
     def _at(self, share: float, power: int) -> float:
