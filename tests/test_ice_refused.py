@@ -76,7 +76,7 @@ def test_refused(name):
     ({"shape": "disc"}, 'shape = "disc": must be "box" in a 2D case'),
     ({"aspect": 2.0}, "aspect: floes of a 2D case have none"),
     ({"velocity": [0.0, 0.1, 0.0]}, "velocity = [0.0, 0.1, 0.0]: y must be 0"),
-    ({"size": 3.0}, "1 of 1 floes do not fit into the rectangle, the largest of 3 m into 1.98"),
+    ({"size": 1.99}, "1 of 1 floes do not fit into the rectangle, the largest of 1.99 m into 1.98"),
     ({"concentration": 0.9, "gap": 0.05}, "there was for 0."),
 ])  # fmt: skip
 def test_refused_in_a_plane(change, told):
