@@ -16,12 +16,15 @@ from ice_cases import FIELD, basin, field, plane
 from parsim.__main__ import main
 from parsim.case import ice
 from parsim.case.model import load, parse
+from parsim.case.places import Place, rotation
+from parsim.case.plans import plan_of
 from parsim.ice.cells import cut
 from parsim.ice.draw import Laws, draw
 from parsim.ice.field import covering, room_for, spread
 from parsim.ice.laws import Listed, Lognormal, Uniform
 from parsim.ice.outlines import gaps, moved, near, outlines
 from parsim.ice.place import Region, Taken, place
+from parsim.solid.shapes import BoxShape
 
 THICK, SQUARE = Listed(kind="list", values=(0.1,)), Listed(kind="list", values=(1.0,))
 NOTHING = outlines([], [])
@@ -106,9 +109,11 @@ def test_what_stands_there_is_left_free(shape, share):
 
 
 def test_where_there_is_no_room():
-    floes = covering(0.9 * 48.0, 1, 1, laws("disc"))
-    assert spread(floes, REGION, NOTHING, 0.05) is None
-    assert 0.6 < room_for(floes, REGION, NOTHING, 0.05) / 48.0 < 0.85
+    region, floes = Region((0.0, 0.0), (4.0, 4.0)), covering(0.9 * 16.0, 1, 1, laws("disc"))
+    assert spread(floes, region, NOTHING, 0.05) is None
+    reached = room_for(floes, region, NOTHING, 0.05)
+    assert 0.4 < reached / 16.0 < 0.85
+    assert spread(covering(reached, 1, 1, laws("disc")), region, NOTHING, 0.05, 1) is not None
     assert room_for(floes, Region((0.0, 0.0), (0.1, 0.1)), NOTHING, 0.05) == 0.0
 
 
@@ -163,11 +168,21 @@ def test_floes_of_a_case_float(shape):
     assert parse(tomllib.loads(case.to_toml())) == case, "the stored case has the same floes, to the bit"
 
 
+def test_the_plan_of_a_body_holds_all_of_it():
+    size = BoxShape(size=(0.04, 1.0, 0.3))
+    for angle in (0.0, 15.0, 20.0, 90.0):
+        there = plan_of(Place(np.array([1.0, 2.0, 0.0]), rotation((0.0, 0.0, angle)), size), 0.0)
+        plan = np.stack(there[:2], 2)[0]
+        corners = size.surface()[0] @ rotation((0.0, 0.0, angle)).T + (1.0, 2.0, 0.0)
+        for n in (np.array([math.cos(a), math.sin(a)]) for a in np.arange(0.0, 6.3, 0.05)):
+            assert (corners[:, :2] @ n).max() - 1e-6 <= (plan @ n).max() <= (corners[:, :2] @ n).max() + 0.02
+
+
 def test_several_fields_and_bodies_leave_each_other_room():
     """The check of all bodies, exact and by other code, finds no overlap, across fields, a pier, a gate and sides."""
     pier = {"name": "pier", "shape": {"kind": "cylinder", "diameter": 0.2, "height": 0.4}, "density": 2000.0,
             "position": [0.5, 0.5, 0.2], "material": "ice", "fixed": True}  # fmt: skip
-    deep = pier | {"name": "sunk", "position": [1.7, 0.5, 0.01], "shape": {"size": [0.4, 0.4, 0.02]}}
+    deep = pier | {"name": "sunk", "position": [1.7, 0.5, 0.02], "shape": {"size": [0.4, 0.4, 0.04]}}
     fields = [field(name="a", max=[1.2, 1.0]), field(name="b", min=[0.8, 0.0], shape="disc", concentration=0.3)]
     case = parse(basin(*fields, bodies=[pier, deep], gate=True))
     assert all(f.floes > 5 for f in case.ice.fields)

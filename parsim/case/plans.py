@@ -7,6 +7,7 @@ import numpy as np
 from parsim.ice.outlines import Outlines, outlines
 
 _WAYS = 24  # directions along which a body is felt, besides those of its faces
+_STEPS = 10**7  # of a turn: directions as near as that are one
 
 
 def plan_of(place, bottom):
@@ -27,7 +28,8 @@ def plan_of(place, bottom):
 def _around(reach, normals=()):
     """Corners (k, 2) of the polygon by lines across some directions, as far as `reach` says, m, from the origin."""
     flat = [math.atan2(s * n[1], s * n[0]) for n in normals if math.hypot(n[0], n[1]) > 0.5 for s in (1.0, -1.0)]
-    every = sorted({round(a % (2.0 * math.pi), 9) for a in [*flat, *(2.0 * math.pi * k / _WAYS for k in range(_WAYS))]})
+    turns = [angle / (2.0 * math.pi) for angle in flat] + [k / _WAYS for k in range(_WAYS)]
+    every = [2.0 * math.pi * step / _STEPS for step in sorted({round(turn * _STEPS) % _STEPS for turn in turns})]
     far = [reach(np.array([math.cos(a), math.sin(a), 0.0])) for a in every]
     corners = []
     for a, b, g, h in zip(every, every[1:] + every[:1], far, far[1:] + far[:1], strict=True):

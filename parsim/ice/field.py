@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 MOST, _MANY = 100_000, 1000  # floes of a field; after so many it is seen whether they will be more
 _SPREAD = 8  # part of a floe's counter, the first of those for attempts
-_ATTEMPTS, _WORK = 10, 8000  # at most, and for so many floes a second one
+_ATTEMPTS, _WORK = 6, 8000  # at most, and for so many floes a second one
 _SHARE, _TRIES = 0.4, 20  # of the plan that scattered floes, shrunk for it, cover; places looked at for each
 _ROUNDS = {"box": 2000, "disc": 2000, "polygon": 150}  # polygons are cut from a cover then
 _ROUNDING = 1e-7  # of the size of floes
