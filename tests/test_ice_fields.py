@@ -142,6 +142,14 @@ def test_gaps_in_plain_cases():
     }
 
 
+def test_corners_that_nearly_coincide_keep_nothing_apart():
+    plate = np.array([[-0.02, -0.5], [0.02, -0.5], [0.02, 0.5], [0.02 + 3e-18, 0.5 + 1e-17], [-0.02, 0.5]])
+    own = outlines([plate, PIER * 0.2], [0.0, 0.0])
+    there = moved(own, *(np.array(v) for v in ([0.0, 0.2], [0.0, 0.3], [1.0] * 2, [0.0] * 2)))
+    for one, two in ((0, 1), (1, 0)):
+        assert gaps(there.take(np.array([one])), there.take(np.array([two]))).apart[0] == pytest.approx(-0.02)
+
+
 def test_cells_hold_their_areas():
     dice = np.random.default_rng(1)
     sites, areas = dice.uniform((1.0, -2.0), (9.0, 4.0), (40, 2)), dice.uniform(0.5, 1.5, 40)
@@ -183,7 +191,7 @@ def test_several_fields_and_bodies_leave_each_other_room():
     pier = {"name": "pier", "shape": {"kind": "cylinder", "diameter": 0.2, "height": 0.4}, "density": 2000.0,
             "position": [0.5, 0.5, 0.2], "material": "ice", "fixed": True}  # fmt: skip
     deep = pier | {"name": "sunk", "position": [1.7, 0.5, 0.02], "shape": {"size": [0.4, 0.4, 0.04]}}
-    fields = [field(name="a", max=[1.2, 1.0]), field(name="b", min=[0.8, 0.0], shape="disc", concentration=0.3)]
+    fields = [field(name="a", max=[1.2, 1.0]), field(name="b", min=[0.8, 0.0], shape="disc", concentration=0.2)]
     case = parse(basin(*fields, bodies=[pier, deep], gate=True))
     assert all(f.floes > 5 for f in case.ice.fields)
     over = [b for b in case.bodies[2:] if abs(b.position[0] - 1.7) < 0.2 and abs(b.position[1] - 0.5) < 0.2]

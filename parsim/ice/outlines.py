@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+_SIDE = 1e-6  # of the radius: shorter sides have no direction
+
+
 class Outlines(NamedTuple):
     """Convex polygons: corners x, y (n, k), anticlockwise, the last repeated where there are fewer; centre cx, cy (n,);
     radius (n,) of the circle about it that holds them all; round (n,): radius of a disc, 0 of what is none."""
@@ -100,7 +103,7 @@ def _along_sides(one, two):
     """Gaps along the sides of the first."""
     ex, ey = np.roll(one.x, -1, axis=1) - one.x, np.roll(one.y, -1, axis=1) - one.y
     length = np.sqrt(ex * ex + ey * ey)
-    side = length > 0.0
+    side = length > _SIDE * one.radius[:, None]
     length = np.where(side, length, 1.0)
     nx, ny = ey / length, -ex / length
     reach = nx[:, :, None] * two.x[:, None, :] + ny[:, :, None] * two.y[:, None, :]
