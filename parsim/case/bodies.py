@@ -51,11 +51,14 @@ def materials(case):
         if pair in pairs[:i]
     ]
     return twice + [
-        f'{key} = "{name}": {_unknown(name, case.materials)}' for key, name in uses if name not in case.materials
+        f'{key} = "{name}": {unknown_material(name, case.materials)}'
+        for key, name in uses
+        if name not in case.materials
     ]
 
 
-def _unknown(name, known):
+def unknown_material(name, known):
+    """Why a material is none, for the end of a message."""
     allowed = ", ".join(known) or "none, [materials.NAME] is missing"
     return f"no such material; allowed: {allowed}{suggestion(nearest(name, known))}"
 
@@ -141,11 +144,13 @@ def overlaps(case):
     boxes = [places.of_body(body) for body in present]
     faults = []
     for i, j, shift in places.near_pairs(boxes, period(case)):
+        if places.apart(boxes[i], boxes[j], shift):
+            continue
         depth = places.overlap(boxes[i], boxes[j], shift)
         if depth > TOUCH:
             faults.append(f"bodies.{present[j].name}: overlaps bodies.{present[i].name} by {depth:.3g} m")
     for body, box in zip(present, boxes, strict=True) if case.gate else ():
-        depth = places.overlap(box, _gate_box(case))
+        depth = places.overlap(box, gate_box(case))
         if depth > TOUCH:
             faults.append(
                 f"bodies.{body.name}: is in the gate, x = {case.gate.min_x!r} to {case.gate.max_x!r}, by {depth:.3g} m"
@@ -181,7 +186,7 @@ def _clashes(joint, others):
             yield f'bodies.{joint.body} has a joint of kind "{other.kind}" already; a pendulum may lock turns besides'
 
 
-def _gate_box(case):
+def gate_box(case):
     """Where the gate is at the start; it reaches above the box."""
     gate, low, high = case.gate, case.box.min, case.box.max
     bottom = gate.bottom + gate.speed * max(0.0, case.start - gate.opens)
@@ -262,7 +267,7 @@ def narrow_passages(case):
 
 def blocked_gauges(case):
     """Names of the gauges that bodies, walls and gate leave no room to read the water level at the start."""
-    solids = [places.of_body(body) for body in placed(case)] + ([_gate_box(case)] if case.gate else [])
+    solids = [places.of_body(body) for body in placed(case)] + ([gate_box(case)] if case.gate else [])
     return [s.name for s in case.output.sensors if isinstance(s, Gauge) and not _readable(case, s, solids)]
 
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from parsim.case import bodies, channel, friction, measure, openings, places, repeats
+from parsim.case import bodies, channel, friction, ice, measure, openings, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -37,9 +37,9 @@ def checked(case, messages):
 
 def doubts(case):
     """What is allowed but doubtful: a list of messages, one for all bodies of one kind."""
-    thin = {}
+    thin, floes = {}, {body.name for field in case.ice.fields for body in ice.floes_of(case, field)}
     for body in case.bodies if case.water.scheme.WET else ():
-        if (across := bodies.particles_across(case, body)) < 4:
+        if body.name not in floes and (across := bodies.particles_across(case, body)) < 4:
             thin.setdefault((across, bodies.thinnest(case, body)), []).append(body.name)
     told = [
         f"bodies.{names[0]}{f' and {len(names) - 1} more' if names[1:] else ''}: {across} particles across the "
@@ -58,6 +58,7 @@ def doubts(case):
             f"water passes as it should through {bodies.PASSAGE:g} spacings or more"
             for name, other, gap in bodies.narrow_passages(case)
         ]
+        + [*ice.doubts(case)]
         + case.water.scheme.doubts()
         + case.contacts.law.doubts(case.dimensions == 2)
         + fills.doubts(case)
@@ -67,24 +68,19 @@ def doubts(case):
 
 def _completed(case):
     """(`case` with the values filled in that depend on other keys, messages)."""
-    floated, faults = [], []
-    for given in repeats.every(case):
-        shape = given.shape.completed()
-        body = given if shape is given.shape else given.model_copy(update={"shape": shape})
-        try:
-            floated.append(_floated(case, body) if body.position[2] == "float" else body)
-        except ValueError as error:
-            floated.append(body)
-            faults.append(f'bodies.{body.name}.position = "float" as z: {error}')
+    if case.gate and case.gate.bottom is None:
+        case = case.model_copy(update={"gate": case.gate.model_copy(update={"bottom": case.box.min[2]})})
+    floated, faults = _all_floated(case, repeats.every(case))
+    case, wrong = ice.with_floes(case.model_copy(update={"bodies": floated}))
+    floes, unfloated = _all_floated(case, case.bodies[len(floated) :])
+    faults += [*wrong, *unfloated]
     middle = (case.box.min[1] + case.box.max[1]) / 2
     sensors = tuple(
         s.model_copy(update={"y": middle}) if hasattr(s, "y") and (s.y is None or case.dimensions == 2) else s
         for s in case.output.sensors
     )
     output = case.output.model_copy(update={"sensors": sensors})
-    update = {"bodies": tuple(floated), "channel": channel.completed(case), "output": output}
-    if case.gate and case.gate.bottom is None:
-        update["gate"] = case.gate.model_copy(update={"bottom": case.box.min[2]})
+    update = {"bodies": (*floated, *floes), "channel": channel.completed(case), "output": output}
     if not case.water.fill and not {"scheme", "speed"} & case.water.model_fields_set:
         update["water"] = case.water.model_copy(update={"scheme": DRY})
     if case.spacing is None and not update.get("water", case.water).scheme.WET:
@@ -92,6 +88,20 @@ def _completed(case):
     if case.wall_material is None:
         update["wall_material"] = next(iter(case.materials), None)
     return case.model_copy(update=update), faults
+
+
+def _all_floated(case, given):
+    """(`given` bodies, those that float at their heights, messages)."""
+    floated, faults = [], []
+    for body in given:
+        shape = body.shape.completed()
+        body = body if shape is body.shape else body.model_copy(update={"shape": shape})
+        try:
+            floated.append(_floated(case, body) if body.position[2] == "float" else body)
+        except ValueError as error:
+            floated.append(body)
+            faults.append(f'bodies.{body.name}.position = "float" as z: {error}')
+    return tuple(floated), faults
 
 
 def _floated(case, body):

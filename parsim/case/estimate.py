@@ -12,6 +12,7 @@ from parsim.particles.state import water_bytes
 
 RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine
 LIST_ROOM = 1.2  # bytes of the neighbour rows over those of the full lattice
+_SHAPES = 200  # shapes of bodies that are looked at, at most
 _PROBES = 12  # per edge of a body, to see how much of it is in the water
 RANK_BYTES = 300e6  # Python, Numba and its machine code
 _FRAME_BYTES, _BODY_BYTES = 90, 2000  # in a frame: of a particle, of a body
@@ -42,7 +43,9 @@ def estimate(case):
     water, gate = round(_water(case)), _gate(case, layers)
     alike = Counter(body.shape for body in case.bodies)
     sampling = case.spacing, layers * case.spacing, case.dimensions == 2
-    body = sum(number * shape.number_of_samples(*sampling) for shape, number in alike.items())
+    some = list(alike.items())[:: math.ceil(len(alike) / _SHAPES) or 1]  # the others are taken to be like them
+    body = sum(number * shape.number_of_samples(*sampling) for shape, number in some)
+    body = round(body * len(case.bodies) / max(sum(number for _, number in some), 1))
     active = water + body + round(gate * wet) + _walls(case, layers, wet)
     dt = time_step(case)
     return Estimate(

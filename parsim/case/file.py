@@ -27,22 +27,26 @@ def read(path, inside=()):
 
 
 def locate(data, folder):
-    """Make the paths of files that bodies and a study name whole, and read those of courses: from where the case is."""
-    study = data.get("study")
+    """Make the paths of files that a case names whole, and read those of courses: they count from where the case is."""
+    study, ice, box = (data.get(name) for name in ("study", "ice", "box"))
     if isinstance(study, dict) and isinstance(study.get("table"), str):
         study["table"] = str((folder / study["table"]).resolve())
     if isinstance(data.get("channel"), dict):
         read_courses(data["channel"], folder, "channel")
-    box = data.get("box")
     faces = box.get("faces") if isinstance(box, dict) else None
     for name, side in faces.items() if isinstance(faces, dict) else ():
         if isinstance(side, dict):
             read_courses(side, folder, f"box.faces.{name}")
-    bodies = data.get("bodies")
-    for body in bodies if isinstance(bodies, list) else ():
-        shape = body.get("shape") if isinstance(body, dict) else None
-        if isinstance(shape, dict) and isinstance(shape.get("file"), str):
-            shape["file"] = str((folder / shape["file"]).resolve())
+    named = [body.get("shape") for body in _tables(data.get("bodies"))]
+    named += [law for field in _tables(ice.get("fields") if isinstance(ice, dict) else None) for law in field.values()]
+    for table in named:
+        if isinstance(table, dict) and isinstance(table.get("file"), str):
+            table["file"] = str((folder / table["file"]).resolve())
+
+
+def _tables(entries):
+    """The tables in what should be a list of them."""
+    return [entry for entry in entries if isinstance(entry, dict)] if isinstance(entries, list) else []
 
 
 def _parsed(path):

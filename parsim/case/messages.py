@@ -1,5 +1,6 @@
 """What is wrong with a case file's keys and values, in words: key path, value, what is allowed, nearest name."""
 
+import re
 from copy import deepcopy
 from typing import get_args, get_origin
 
@@ -103,7 +104,9 @@ def _message(model, data, place, texts):
     if "missing" in texts:
         return f"{path}: missing; {meaning}" if meaning else f"{path}: missing; required"
     allowed = " or ".join(text if i == 0 else text.removeprefix("must be ") for i, text in enumerate(texts))
-    return f"{path} = {short(_value_at(data, place))}: {allowed}" + (f" ({meaning})" if meaning else "")
+    value = _value_at(data, place)
+    meant = nearest(value, re.findall("'([^']+)'", allowed)) if isinstance(value, str) else None
+    return f"{path} = {short(value)}: {allowed}" + (f" ({meaning})" if meaning else "") + suggestion(meant)
 
 
 def short(value):

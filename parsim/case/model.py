@@ -17,6 +17,7 @@ from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
 from parsim.case.file import locate, read, replaced, written
 from parsim.case.friction import Eddies, Friction
+from parsim.case.ice import Ice
 from parsim.case.measure import Measure
 from parsim.case.messages import validated
 from parsim.case.output import Output, Report
@@ -157,6 +158,7 @@ class Case(Table):
     measure: Measure | None = Field(None, description="what is measured of a river with ice; left out: nothing")
     materials: dict[Name, Material] = Field({}, description="materials by name")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies")
+    ice: Ice = Field(Ice(), description="floes by laws")
     joints: tuple[Joint, ...] = Field((), description="what ties bodies to the world")
 
     @property

@@ -94,6 +94,18 @@ def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     return -_separation(first, second, between)
 
 
+def apart(first, second, shift=(0.0, 0.0, 0.0)):
+    """Whether the line between their centres, or a face of one, shows that they do not overlap; else they may."""
+    shapes = first.shape, second.shape
+    if any(shape.FLAT or type(shape) is MeshShape for shape in shapes):
+        return False
+    between = second.centre + np.asarray(shift) - first.centre
+    faces = np.concatenate([place.shape.normals() @ place.axes.T for place in (first, second)])
+    ways = np.concatenate([[between / max(np.linalg.norm(between), 1e-300)], faces * np.sign(faces @ between)[:, None]])
+    order = np.argsort(-(ways @ between), kind="stable")
+    return any(ways[k] @ between >= first.along(ways[k]) + second.along(-ways[k]) for k in order if ways[k].any())
+
+
 def _deepest(first, second, between):
     """How deep any point of one body's surface lies in the other, m."""
     deep = []

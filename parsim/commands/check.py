@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from parsim.case import ice
 from parsim.case import runs_table as tables
 from parsim.case.estimate import brief, lines
 from parsim.case.file import read
@@ -38,7 +39,7 @@ def check_cases(
     case = load(path, changes, until)
     _check_ranks(case, ranks)
     study = _study(Path(path), ranks)
-    print(f"{path}: a valid case", *lines(case, ranks), *study, sep="\n")
+    print(f"{path}: a valid case", *lines(case, ranks), *ice.told(case), *study, sep="\n")
     for warning in case.warnings():
         print(f"warning: {warning}")
 

@@ -66,9 +66,9 @@ class CylinderShape(ShapeTable):
     def under(self, up, level):
         """See `ShapeTable`: segments of the discs of which it is made."""
         radius, along = 0.5 * self.diameter, math.hypot(*up[:2])
-        z = ((np.arange(_SLICES) + 0.5) / _SLICES - 0.5) * self.height
         if along < 1e-9:
             return self.volume * min(max(0.5 + level / self.height, 0.0), 1.0)
+        z = ((np.arange(_SLICES) + 0.5) / _SLICES - 0.5) * self.height
         cut = np.clip((level - z * up[2]) / along, -radius, radius)
         segment = radius**2 * (math.pi - np.arccos(cut / radius)) + cut * np.sqrt(radius**2 - cut**2)
         return float(segment.mean()) * self.height

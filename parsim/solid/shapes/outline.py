@@ -91,8 +91,18 @@ def inset(corners, by):
 
 def most_inset(corners):
     """By how much, m, the sides of a convex polygon can move inwards before none is left: its inradius."""
+    normals, offsets = map(np.array, zip(*sides_of(corners), strict=True))
+    along = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    slope, across = normals @ along.T, normals @ normals.T  # of each side (row) along and across each other
+    ahead, behind = slope > 1e-12, slope < -1e-12
+    steep = np.where(ahead | behind, slope, 1.0)
     low, high = 0.0, float(np.ptp(corners, axis=0).max())
     for _ in range(60):
         by = 0.5 * (low + high)
-        low, high = (by, high) if any((p != q).any() for p, q in inset(corners, by)) else (low, by)
+        limit = offsets - by
+        room = limit[:, None] - limit * across
+        last = np.where(ahead, room / steep, np.inf).min(axis=0)
+        first = np.where(behind, room / steep, -np.inf).max(axis=0)
+        shut = (~(ahead | behind) & (room < -1e-12 * np.abs(limit)[:, None])).any(axis=0)
+        low, high = (by, high) if ((first < last) & ~shut).any() else (low, by)
     return low

@@ -80,7 +80,7 @@ class PrismShape(ShapeTable):
 
     def thinnest(self, planar):
         """See `ShapeTable`."""
-        return min(most_inset(self.corners), 0.5 * self.height)
+        return min(_inradius(self.points), 0.5 * self.height)
 
     def normals(self):
         """See `ShapeTable`."""
@@ -89,6 +89,10 @@ class PrismShape(ShapeTable):
     def away(self, points):
         """See `ShapeTable`."""
         return away_from_stood(flat_away(points[:, :2], self.corners), points[:, 2], self.height)
+
+    def afloat(self, share, up=(0.0, 0.0, 1.0)):
+        """See `ShapeTable`; exact where it stands upright."""
+        return self.height * (0.5 - share) if up[2] > 1.0 - 1e-12 else super().afloat(share, up)
 
     def inertia(self, mass):
         """See `ShapeTable`."""
@@ -111,7 +115,7 @@ class PrismShape(ShapeTable):
         """
         wanted = spacing or 2.0 * self.thinnest(False)
         up, tall = spread(np.array([-0.5 * self.height]), np.array([0.5 * self.height]), wanted)
-        rows, rings = [], max(math.ceil(most_inset(self.corners) / wanted - 1e-9), 2)
+        rows, rings = [], max(math.ceil(_inradius(self.points) / wanted - 1e-9), 2)
         for (normal, offset), p, q in zip(
             sides_of(self.corners), self.corners, np.roll(self.corners, -1, 0), strict=True
         ):
@@ -131,7 +135,7 @@ class PrismShape(ShapeTable):
     def samples(self, spacing, depth, planar):
         """See `ShapeTable`."""
         rings = polygon_rings(self.corners, spacing)
-        return stacked_samples(rings, most_inset(self.corners), self.height, spacing, depth)
+        return stacked_samples(rings, _inradius(self.points), self.height, spacing, depth)
 
 
 @cache
@@ -143,6 +147,12 @@ def _in_principal_axes(points):
     angle = 0.0 if even else 0.5 * math.atan2(2.0 * xy, xx - yy)
     c, s = math.cos(angle), math.sin(angle)
     return corners @ np.array([[c, -s], [s, c]]), angle
+
+
+@cache
+def _inradius(points):
+    """Radius of the largest circle in it, m."""
+    return most_inset(_in_principal_axes(points)[0])
 
 
 def _hat(scale, step):
