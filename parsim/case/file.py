@@ -26,12 +26,12 @@ def read(path, inside=()):
 
 
 def locate(data, folder):
-    """Make the paths of files that bodies name whole: they count from where the case is."""
+    """Make the paths of files that bodies and the bed name whole: they count from where the case is."""
     bodies = data.get("bodies")
-    for body in bodies if isinstance(bodies, list) else ():
-        shape = body.get("shape") if isinstance(body, dict) else None
-        if isinstance(shape, dict) and isinstance(shape.get("file"), str):
-            shape["file"] = str((folder / shape["file"]).resolve())
+    shapes = [body.get("shape") for body in (bodies if isinstance(bodies, list) else ()) if isinstance(body, dict)]
+    for table in (*shapes, data.get("bed")):
+        if isinstance(table, dict) and isinstance(table.get("file"), str):
+            table["file"] = str((folder / table["file"]).resolve())
 
 
 def _parsed(path):

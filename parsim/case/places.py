@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from parsim.solid.shapes import BoxShape, MeshShape, SphereShape
+from parsim.solid.shapes import BoxShape, SphereShape
 from parsim.solid.shapes.box import distance
+from parsim.solid.shapes.meshed import Meshed
 
 _WAYS, _ROUNDS = 64, 12  # directions tried at first, and around the best of them
 
@@ -79,7 +80,7 @@ def upright(low, high):
 def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     """Least depth, m, by which `first` enters `second` moved by `shift`; 0 or less when they are apart or touch."""
     between = second.centre + np.asarray(shift) - first.centre
-    if MeshShape in (type(first.shape), type(second.shape)):
+    if isinstance(first.shape, Meshed) or isinstance(second.shape, Meshed):
         return _deepest(first, second, between)
     kinds = [type(place.shape) for place in (first, second)]
     if SphereShape in kinds:
