@@ -32,11 +32,7 @@ def body_of(case):
     if bed.axis:
         place["origin"], place["angle"] = along(*bed.axis)
     shape = BedShape(
-        kind="bed",
-        low=case.box.min,
-        high=case.box.max[:2],
-        resolution=bed.resolution or case.spacing,
-        **place,
+        kind="bed", low=case.box.min, high=case.box.max[:2], resolution=bed.resolution or case.spacing, **place
     ).completed()
     wrong = [text.removeprefix("shape.file: ").removeprefix("shape: ") for text in shape.faults(False)]
     if not wrong and (most := float(shape.heights.z.max())) > case.box.max[2] + TOUCH:

@@ -20,7 +20,7 @@ FORMATS = (*READERS, "g01 to g99")
 def read(path: Path, layout: str = "straight", reach: str | None = None) -> Surface:
     """The surface in a file, in its own coordinates and units; `layout`, `reach`: see `hecras`. Raises InputError."""
     kind = path.suffix[1:].lower()
-    if not sections_in(path) and kind not in READERS:
+    if not is_ground(path):
         raise InputError(
             f"{path}: no format of ground; allowed: {', '.join(FORMATS)}{suggestion(nearest(kind, READERS, 0.5))}"
         )
@@ -36,3 +36,8 @@ def sections_in(path: Path) -> bool:
     """Whether a file is HEC-RAS geometry by its name: .g01 to .g99."""
     kind = path.suffix[1:].lower()
     return len(kind) == 3 and kind[0] == "g" and kind[1:].isdecimal()
+
+
+def is_ground(path: Path) -> bool:
+    """Whether a file holds ground by its name."""
+    return sections_in(path) or path.suffix[1:].lower() in READERS

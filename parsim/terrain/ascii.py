@@ -25,8 +25,8 @@ def read(path: Path) -> HeightField:
             break
         head[words[0].lower()] = _number(path, *words)
     missing = [key for key in _NEEDED if key not in head]
-    places = [next((key for key in (f"{a}llcorner", f"{a}llcenter") if key in head), None) for a in "xy"]
-    missing += [f"{a}llcorner or {a}llcenter" for a, key in zip("xy", places, strict=True) if key is None]
+    places = [key for a in "xy" for key in (f"{a}llcorner", f"{a}llcenter") if key in head][:2]
+    missing += [f"{a}llcorner or {a}llcenter" for a in "xy" if not any(key[0] == a for key in places)]
     if missing:
         raise InputError(f"{path}: its head lacks {', '.join(missing)}; is it an ESRI ASCII raster?")
     columns, rows, size = int(head["ncols"]), int(head["nrows"]), head["cellsize"]
@@ -37,7 +37,9 @@ def read(path: Path) -> HeightField:
     except ValueError as error:
         raise InputError(f"{path}: a height is no number: {error}") from None
     if values.size != columns * rows:
-        raise InputError(f"{path}: holds {values.size} heights; ncols = {columns}, nrows = {rows} need {columns * rows}")
+        raise InputError(
+            f"{path}: holds {values.size} heights; ncols = {columns}, nrows = {rows} need {columns * rows}"
+        )
     values[(values == head.get("nodata_value", -9999.0)) | ~np.isfinite(values)] = np.nan
     x, y = (
         head[key] + size * (np.arange(number) + (0.5 if key.endswith("corner") else 0.0))
@@ -58,7 +60,9 @@ def write(path: Path, field: HeightField) -> None:
         "NODATA_value": -9999,
     }
     rows = np.where(np.isnan(field.z), -9999.0, field.z).T[::-1]
-    text = "\n".join([*(f"{key} {value}" for key, value in head.items()), *(" ".join(map(repr, r.tolist())) for r in rows)])
+    text = "\n".join(
+        [*(f"{key} {value}" for key, value in head.items()), *(" ".join(map(repr, r.tolist())) for r in rows)]
+    )
     path.write_text(text + "\n", encoding="utf-8")
 
 

@@ -35,7 +35,7 @@ class Frame(NamedTuple):
 
 
 def along(first: tuple[float, float], second: tuple[float, float]) -> tuple[tuple[float, float], float]:
-    """Origin and angle, degrees, of a `Frame` whose x axis runs from the first of two places of a file to the second."""
+    """Origin and angle, degrees, of a `Frame` whose x axis runs from one place of a file to another."""
     return first, math.degrees(math.atan2(second[1] - first[1], second[0] - first[0]))
 
 

@@ -5,6 +5,7 @@ Numbers fill their 8 columns (16 in cut lines) and then run together: "     1359
 
 from __future__ import annotations
 
+import itertools
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 _SECTION = "1"  # the type of a node that is a cross-section; others are culverts, bridges and weirs
 _WIDTHS = {"#Sta/Elev": (8, 2), "#Mann": (8, 3), "XS GIS Cut Line": (16, 2)}  # columns, numbers of an entry
+Node = tuple[int, list[str], list[str]]  # line number, words of its head, lines
 
 
 class Section(NamedTuple):
@@ -69,8 +71,9 @@ def _plain(name):
 
 
 def _reaches(path):
-    """Yield ("River, Reach", [(line number, head, lines)] of its cross-sections)."""
-    name, nodes, lines = "", [], path.read_text(encoding="utf-8-sig", errors="replace").split("\n")
+    """Yield ("River, Reach", [Node] of its cross-sections)."""
+    name, nodes = "", list[Node]()
+    lines = path.read_text(encoding="utf-8-sig", errors="replace").split("\n")
     for number, line in enumerate(lines, 1):
         key, _, value = line.partition("=")
         if key.strip() == "River Reach":
@@ -86,7 +89,7 @@ def _reaches(path):
         yield name, nodes
 
 
-def _of_sections(nodes):
+def _of_sections(nodes: list[Node]) -> list[Node]:
     return [node for node in nodes if node[1][0] == _SECTION]
 
 
@@ -121,7 +124,7 @@ def _section(path, number, head, lines):
         raise InputError(f"{place}: Bank Sta = {banks}: must be two stations, left and right, from {low:g} to {high:g}")
     manning = blocks.get("#Mann", np.zeros((0, 3)))[:, :2]
     cut = blocks.get("XS GIS Cut Line", np.zeros((0, 2)))
-    return Section(river_station, length, *profile.T, banks, manning, cut, ice)
+    return Section(river_station, length, profile[:, 0], profile[:, 1], banks, manning, cut, ice)
 
 
 def _fields(place, key, value, lines):
@@ -131,7 +134,7 @@ def _fields(place, key, value, lines):
         count = int(value.split(",")[0])
     except ValueError:
         raise InputError(f"{place}: {key}= {value.strip()}: must begin with a whole number") from None
-    words = []
+    words: list[str] = []
     for line in lines:
         if len(words) >= count * each:
             break
@@ -161,7 +164,7 @@ def _numbers(place, key, value):
 
 def _ordered(path, nodes):
     """Refuse sections that are not in order downstream, or of which one has no length to the next."""
-    for upper, lower in zip(nodes[:-1], nodes[1:], strict=True):
+    for upper, lower in itertools.pairwise(nodes):
         if not upper.river_station > lower.river_station:
             raise InputError(
                 f"{path}: sections are out of order: {lower.river_station:g} comes after {upper.river_station:g}; "

@@ -34,7 +34,7 @@ class HeightField(NamedTuple):
         return np.array([self.x[-1], self.y[-1]]) + self.beyond
 
     def at(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Bilinear heights at points x, y of one shape; NaN beside nodes without data; beyond the grid as at its rim."""
+        """Bilinear heights at points x, y of one shape; NaN beside nodes without data; past the grid as at its rim."""
         (i, s), (j, t) = _between(self.x, x), _between(self.y, y)
         out = np.zeros(np.broadcast(x, y).shape)
         for di, share in ((0, 1.0 - s), (1, s)):

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from parsim.terrain.hecras import Section
 
+_ACROSS, _ALONG = 32, 8  # cuts of each third of a section, and of the way to the next: a twisted strip is not flat
+
 
 def straight(nodes: Sequence[Section]) -> Triangles:
     """The reach laid straight: x along the channel from the first section on, y to the left from between the banks."""
@@ -69,23 +71,26 @@ def _strips(nodes, place):
     points, triangles, first = [], [], 0
     for k in range(len(nodes) - 1):
         shares = [_shares(node) for node in nodes[k : k + 2]]
-        t = np.unique(np.concatenate(shares))
+        t, ends = np.unique(np.concatenate([*shares, np.linspace(0.0, 3.0, 3 * _ACROSS + 1)])), []
         for n, node, own in zip((k, k + 1), nodes[k : k + 2], shares, strict=True):
             x, y = place(n, np.interp(t, own, node.station))
-            points.append(np.stack([x, y, np.interp(t, own, node.elevation)], -1))
-        a, b = first + np.arange(len(t) - 1), first + len(t) + np.arange(len(t) - 1)
-        triangles += [np.stack([a, b, a + 1], -1), np.stack([a + 1, b, b + 1], -1)]
-        first += 2 * len(t)
+            ends.append(np.stack([x, y, np.interp(t, own, node.elevation)], -1))
+        share = np.linspace(0.0, 1.0, _ALONG + 1)[:, None, None]
+        points.append(((1.0 - share) * ends[0] + share * ends[1]).reshape(-1, 3))
+        node = first + np.arange((_ALONG + 1) * len(t)).reshape(-1, len(t))
+        a, b, c, d = (part.ravel() for part in (node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]))
+        triangles += [np.stack([a, b, d], -1), np.stack([d, b, c], -1)]
+        first += node.size
     return Triangles(np.concatenate(points), np.concatenate(triangles))
 
 
 def _shares(node):
     """t (n,) of the points of a section; of points above each other the second comes a little later."""
     marks = [node.station[0], *node.banks, node.station[-1]]
-    known = [(mark, float(k)) for k, mark in enumerate(marks)]
+    count = [0.0, 1.0, 2.0, 3.0]
     if marks[0] == marks[1]:  # a section without an overbank begins or ends at its bank
-        known = known[1:]
-    if marks[2] == marks[3]:
-        known = known[:-1]
-    t = np.interp(node.station, *zip(*known, strict=True))
+        marks, count = marks[1:], count[1:]
+    if marks[-2] == marks[-1]:
+        marks, count = marks[:-1], count[:-1]
+    t = np.interp(node.station, marks, count)
     return np.maximum.accumulate(t + 1e-12 * np.arange(len(t)))

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import trimesh
 
 from parsim.errors import InputError
 from parsim.terrain.triangles import Triangles
@@ -16,9 +15,11 @@ if TYPE_CHECKING:
 
 def read(path: Path) -> Triangles:
     """The triangles of a file in its units. Raises InputError."""
+    import trimesh  # takes long
+
     try:
         with path.open("rb") as file:
-            surface = trimesh.load(file, file_type="stl", process=False, force="mesh")
+            surface: Any = trimesh.load(file, file_type="stl", process=False, force="mesh")
     except (ValueError, KeyError, IndexError, TypeError) as error:
         raise InputError(f"{path}: cannot be read as stl: {error}") from None
     points = np.array(surface.vertices, float)

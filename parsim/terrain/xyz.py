@@ -17,7 +17,7 @@ _FULL = 0.5  # share of the nodes of a grid from which points are taken for one 
 
 
 def read(path: Path) -> HeightField | Triangles:
-    """The surface through the points of a file; lines before the first of numbers are passed over. Raises InputError."""
+    """The surface through the points of a file; lines before the first numbers are passed over. Raises InputError."""
     rows, begun = [], False
     for number, line in enumerate(path.read_text(encoding="utf-8-sig").split("\n"), 1):
         words = line.partition("#")[0].replace(",", " ").replace(";", " ").split()

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from parsim.case.types import Moderate
 from parsim.errors import InputError
-from parsim.solid.shapes.meshed import DIGEST, Meshed, cut, digest_of, mark_of
+from parsim.solid.shapes.meshed import DIGEST, Meshed, cut, mark_of
 from parsim.solid.shapes.samples import Samples, face_of
 
 _NODES = 64  # of the field along its longest side, where nothing else is asked for
