@@ -15,7 +15,7 @@ from parsim.terrain import hecras, sections
 from parsim.terrain.frame import Frame
 
 GRAVITY = 9.81  # m/s2
-_LOOKS = 400  # places along and across at which the ground is looked at first
+_LOOKS = 401  # places along and across at which the ground is looked at first
 _ROWS = 10  # particles over the greatest depth, where no spacing is asked for
 _BANK = 4  # spacings of dry bank beside the water, and of ground under it: what the water sees
 
@@ -54,8 +54,8 @@ def new_reach(name: str, source: Path, asked: Asked) -> None:
     folder = Path(name)
     if folder.exists():
         raise InputError(f"NAME = {name}: {folder} exists already and is not overwritten; choose another name")
-    nodes = hecras.read(source, asked.river_reach) if terrain.sections_in(source) else []
     surface = terrain.read(source, "straight", asked.river_reach)
+    nodes = hecras.read(source, asked.river_reach) if terrain.sections_in(source) else []
     ends = _ends(surface, nodes, asked)
     box = _cut(surface, nodes, ends, asked)
     n = sections.manning(nodes, *ends) if nodes else None
@@ -144,9 +144,9 @@ def _wet(z, y, level):
 
 
 def _nice(value):
-    """The largest of 1, 2 and 5 times a power of ten that is at most `value`."""
-    power = 10.0 ** math.floor(math.log10(value))
-    return max(round(step * power, 12) for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-9))
+    """The largest of 1, 2 and 5 times a power of ten that is at most `value`, give or take a hundredth."""
+    power = 10.0 ** math.floor(math.log10(1.01 * value))
+    return max(round(step * power, 12) for step in (1.0, 2.0, 5.0) if step * power <= 1.01 * value)
 
 
 def _text(file, asked, box, n):
