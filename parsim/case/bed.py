@@ -33,7 +33,7 @@ def body_of(case):
         place["origin"], place["angle"] = along(*bed.axis)
     shape = BedShape(
         kind="bed", low=case.box.min, high=case.box.max[:2], resolution=bed.resolution or case.spacing, **place
-    ).completed()
+    )
     wrong = [text.removeprefix("shape.file: ").removeprefix("shape: ") for text in shape.faults(False)]
     if not wrong and (most := float(shape.heights.z.max())) > case.box.max[2] + TOUCH:
         wrong = [f"its ground reaches up to z = {most:.6g} m, the box to {case.box.max[2]:g}; change box.max or datum"]

@@ -13,8 +13,8 @@ from parsim.fluid import DRY
 
 def checked(case, messages):
     """`case` completed. Raises InputError with `messages` and everything else that is wrong."""
-    case, faults = _completed(case)
     case, of_bed = case.with_bed()
+    case, faults = _completed(case)
     faults += of_bed
     if case.spacing is None:
         missing = "spacing: missing; particle spacing l0, m; required where there is water"

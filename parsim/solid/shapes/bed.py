@@ -79,6 +79,10 @@ class BedShape(Ground, Meshed):
             yield f"shape.resolution = {self.resolution}: makes a field of {nodes:.3g} nodes; at most {_MOST:.3g}"
         yield from self.changed()
 
+    def thinnest(self, planar):
+        """See `ShapeTable`: of its sides and its height."""
+        return 0.5 * float(min(*np.subtract(self.high, self.low[:2]), self.heights.z.max() - self.low[2]))
+
     def coarse(self):
         """How far it is off half way between its heights at most, m, where that is more than half of their distance."""
         surface, heights = _surface(self.file, mark_of(self.file), self.layout, self.river_reach), self.heights
