@@ -36,6 +36,6 @@ class Ground(Table):
     )
 
     @property
-    def frame(self):
+    def frame(self) -> Frame:
         """The `Frame` of the case in the file."""
         return Frame(self.origin, self.angle, self.datum, self.scale)
