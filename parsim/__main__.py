@@ -11,7 +11,7 @@ import typer
 
 from parsim import __version__
 from parsim.case.examples import path_of
-from parsim.commands.options import CaseFile, Changes, Folder, Ranks, Row, TableFile, Threads, Until, Walltime
+from parsim.commands import options as given
 from parsim.errors import InputError
 from parsim.launch import exits, stop
 
@@ -45,17 +45,17 @@ def command(function: Callable[..., int | None]) -> Callable[..., int | None]:
 
 @command
 def run(
-    case: CaseFile,
+    case: given.CaseFile,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="output folder, made by the run")],
-    until: Until = None,
-    changes: Changes = None,
-    table: TableFile = None,
-    row: Row = None,
+    until: given.Until = None,
+    changes: given.Changes = None,
+    table: given.TableFile = None,
+    row: given.Row = None,
     force: Annotated[bool, typer.Option("--force", help="overwrite an output folder")] = False,
-    threads: Threads = None,
-    ranks: Ranks = None,
+    threads: given.Threads = None,
+    ranks: given.Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="kernel variant, in place of the fastest")] = None,
-    walltime: Walltime = None,
+    walltime: given.Walltime = None,
 ) -> int:
     """Run a case. Under mpirun or srun every rank runs this command."""
     from parsim.case.load import load
@@ -103,8 +103,8 @@ def study(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="folder of all runs; one there goes on")],
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")] = 1,
     ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")] = 1,
-    threads: Threads = None,
-    walltime: Walltime = None,
+    threads: given.Threads = None,
+    walltime: given.Walltime = None,
     gather: Annotated[bool, typer.Option("--gather", help="make no run, tell what follows of those there are")] = False,
     slurm: Annotated[
         bool, typer.Option("--slurm", help="write the script of a Slurm array that makes the runs")
@@ -121,18 +121,18 @@ def study(
 
 @command
 def resume(
-    out: Folder,
-    until: Until = None,
-    threads: Threads = None,
-    ranks: Ranks = None,
+    out: given.Folder,
+    until: given.Until = None,
+    threads: given.Threads = None,
+    ranks: given.Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="another kernel variant: other last bits")] = None,
-    walltime: Walltime = None,
+    walltime: given.Walltime = None,
     case: Annotated[
         Path | None, typer.Option("--case", metavar="CASE", help="go on only if the run is of this case; its end holds")
     ] = None,
-    changes: Changes = None,
-    table: TableFile = None,
-    row: Row = None,
+    changes: given.Changes = None,
+    table: given.TableFile = None,
+    row: given.Row = None,
 ) -> int:
     """Go on with a run from its newest whole checkpoint, on any number of ranks, to the same bits."""
     from parsim.case.load import load
@@ -182,11 +182,11 @@ def _settings(threads, kernel, walltime):
 
 @command
 def check(
-    case: CaseFile,
-    changes: Changes = None,
-    until: Until = None,
+    case: given.CaseFile,
+    changes: given.Changes = None,
+    until: given.Until = None,
     ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")] = 1,
-    table: TableFile = None,
+    table: given.TableFile = None,
 ) -> None:
     """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
     from parsim.commands.check import check_cases
@@ -195,7 +195,7 @@ def check(
 
 
 @command
-def info(out: Folder) -> None:
+def info(out: given.Folder) -> None:
     """Say what an output folder holds."""
     from parsim.commands.info import tell
 
@@ -214,7 +214,7 @@ def compare(
 
 
 @command
-def report(out: Folder) -> int:
+def report(out: given.Folder) -> int:
     """Make tables, figures and a page from an output folder."""
     from parsim.report import make_report
 
@@ -256,17 +256,26 @@ def new(
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="writes NAME.toml")] = None,
     example: Annotated[
         str | None,
-        typer.Option("--from", metavar="EXAMPLE", help="start from an example, in place of a commented case"),
+        typer.Option(
+            "--from", metavar="EXAMPLE", help="start from an example, or from a file of ground: then NAME is a folder"
+        ),
     ] = None,
     listed: Annotated[bool, typer.Option("--list", help="print the examples")] = False,
+    first: given.FirstStation = None,
+    last: given.LastStation = None,
+    spacing: given.Spacing = None,
+    level: given.Level = None,
+    river_reach: given.RiverReach = None,
+    scale: given.Scale = 1.0,
 ) -> None:
     """Write a case to start from; never overwrites."""
     from parsim.commands import new as cases
+    from parsim.commands.new_reach import Asked
 
     if listed:
         cases.show()
     else:
-        cases.new_case(name, example)
+        cases.new_case(name, example, Asked(first, last, spacing, level, river_reach, scale))
 
 
 def _version(asked: bool) -> None:

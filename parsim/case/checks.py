@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from parsim.case import bodies, channel, friction, ice, measure, openings, places, repeats
+from parsim.case import bed, bodies, channel, friction, ice, measure, openings, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -13,7 +13,9 @@ from parsim.fluid import DRY
 
 def checked(case, messages):
     """`case` completed. Raises InputError with `messages` and everything else that is wrong."""
+    case, of_bed = case.with_bed()
     case, faults = _completed(case)
+    faults += of_bed
     if case.spacing is None:
         missing = "spacing: missing; particle spacing l0, m; required where there is water"
         raise InputError([*messages, *faults, missing])
@@ -24,6 +26,7 @@ def checked(case, messages):
         bodies.speeds,
         bodies.overlaps,
         bodies.joints,
+        bed.faults,
         bodies.gate,
         bodies.sensors,
     )
@@ -62,7 +65,7 @@ def doubts(case):
         + case.water.scheme.doubts()
         + case.contacts.law.doubts(case.dimensions == 2)
         + fills.doubts(case)
-        + [*friction.doubts(case)]
+        + [*friction.doubts(case), *bed.doubts(case)]
     )
 
 

@@ -39,7 +39,7 @@ def locate(data, folder):
             read_courses(side, folder, f"box.faces.{name}")
     named = [body.get("shape") for body in _tables(data.get("bodies"))]
     named += [law for field in _tables(ice.get("fields") if isinstance(ice, dict) else None) for law in field.values()]
-    for table in named:
+    for table in (*named, data.get("bed")):
         if isinstance(table, dict) and isinstance(table.get("file"), str):
             table["file"] = str((folder / table["file"]).resolve())
 

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from parsim.boundary.sides import OPEN, WALL, Side
+from parsim.case.bed import Bed, body_of
 from parsim.case.channel import Channel
 from parsim.case.checks import checked, doubts
 from parsim.case.contacts import Contacts, Material
@@ -149,6 +150,7 @@ class Case(Table):
     wall_material: Name | None = Field(None, description="material of walls and gate; left out: the first material")
     box: Box = Field(description="the box that holds everything")
     water: Water = Field(Water(), description="the water and its scheme")
+    bed: Bed | None = Field(None, description="ground from a file over the whole box; left out: none")
     channel: Channel | None = Field(None, description="a discharge that is held between periodic sides; left out: none")
     gate: Gate | None = Field(None, description="a plate that rises; left out: none")
     contacts: Contacts = Field(Contacts(), description="how bodies touch")
@@ -197,6 +199,14 @@ class Case(Table):
     def axes(self):
         """Indices of the axes along which things move: (0, 1, 2), in 2D (0, 2)."""
         return (0, 2) if self.dimensions == 2 else (0, 1, 2)
+
+    def with_bed(self):
+        """(the same with its bed among the bodies, messages)."""
+        if self.bed is None:
+            return self, []
+        keys, faults = body_of(self)
+        bodies = (*self.bodies, Body(**keys)) if keys else self.bodies
+        return self.model_copy(update={"bodies": bodies, "bed": None}), faults
 
     def mass_of(self, body):
         """Mass of one of `bodies`, kg (2D: per metre of width)."""

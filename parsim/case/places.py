@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from parsim.solid.shapes import BoxShape, MeshShape, SphereShape
+from parsim.solid.shapes import BoxShape, SphereShape
 from parsim.solid.shapes.box import distance
+from parsim.solid.shapes.meshed import Meshed
 
 _WAYS, _ROUNDS = 64, 12  # directions tried at first, and around the best of them
 
@@ -79,7 +80,7 @@ def upright(low, high):
 def overlap(first, second, shift=(0.0, 0.0, 0.0)):
     """Least depth, m, by which `first` enters `second` moved by `shift`; 0 or less when they are apart or touch."""
     between = second.centre + np.asarray(shift) - first.centre
-    if MeshShape in (type(first.shape), type(second.shape)):
+    if isinstance(first.shape, Meshed) or isinstance(second.shape, Meshed):
         return _deepest(first, second, between)
     kinds = [type(place.shape) for place in (first, second)]
     if SphereShape in kinds:
@@ -97,7 +98,7 @@ def overlap(first, second, shift=(0.0, 0.0, 0.0)):
 def apart(first, second, shift=(0.0, 0.0, 0.0)):
     """Whether the line between their centres, or a face of one, shows that they do not overlap; else they may."""
     shapes = first.shape, second.shape
-    if any(shape.FLAT or type(shape) is MeshShape for shape in shapes):
+    if any(shape.FLAT or isinstance(shape, Meshed) for shape in shapes):
         return False
     between = second.centre + np.asarray(shift) - first.centre
     faces = np.concatenate([place.shape.normals() @ place.axes.T for place in (first, second)])

@@ -1,19 +1,26 @@
-"""`parsim new`: a case to start from, the commented one or an example."""
+"""`parsim new`: a case to start from, the commented one, an example or a reach."""
 
 from pathlib import Path
 
-from parsim import __version__
+from parsim import __version__, terrain
 from parsim.case import examples, file, model
+from parsim.commands.new_reach import Asked, new_reach
 from parsim.errors import InputError, WriteError, suggestion
 
 
-def new_case(name: str | None, example: str | None = None) -> None:
+def new_case(name: str | None, example: str | None = None, asked: Asked = Asked()) -> None:  # noqa: B008
     """Write NAME.toml: the commented case, or the `example` with all its values in one file; never overwrites.
 
-    Raises InputError for a name that is taken or an example that there is not, WriteError where it cannot be written.
+    Where `example` is a file of ground, a folder NAME with the case of what is `asked` of it: see `new_reach`. Raises
+    InputError for a name that is taken or an example that there is not, WriteError where it cannot be written.
     """
     if name is None:
         raise InputError("NAME: missing; give the name of the case to write, or --list")
+    if example is not None and terrain.is_ground(Path(example)):
+        new_reach(name, Path(example), asked)
+        return
+    if asked != Asked():
+        raise InputError(f"--from {example}: stations, spacing, level, reach and scale belong to a file of ground")
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     text = _text(example)
     try:

@@ -25,3 +25,18 @@ TableFile = Annotated[
 ]
 Row = Annotated[int | None, typer.Option(metavar="N", help="the row of the table to run")]
 Until = Annotated[float | None, typer.Option(metavar="T", help="end time, s, in place of run.until")]
+FirstStation = Annotated[
+    float | None,
+    typer.Option("--from-station", metavar="A", help="river station where a reach begins, else x in the file"),
+]
+LastStation = Annotated[
+    float | None, typer.Option("--to-station", metavar="B", help="the same where it ends, downstream")
+]
+Spacing = Annotated[float | None, typer.Option(min=1e-6, metavar="S", help="spacing of a reach, m")]
+Level = Annotated[float | None, typer.Option(metavar="Z", help="level of the water of a reach, a height in the file")]
+RiverReach = Annotated[
+    str | None, typer.Option(metavar="NAME", help='"River, Reach" of a file of sections with several')
+]
+Scale = Annotated[
+    float, typer.Option(min=1e-6, metavar="M", help="m of one unit of the file of a reach: 0.3048 for feet")
+]

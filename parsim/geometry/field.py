@@ -165,7 +165,7 @@ def _side_of(y, z, p, q):
 
 @kernel
 def field_distance(p, values, grid):
-    """(signed distance, m, unit vector along which it grows (3,)) at `p` (3,), m; `grid` (8,): see `shapes.mesh.flat`.
+    """(signed distance, m, direction in which it grows (3,)) at `p` (3,), m; `grid` (8,): see `shapes.meshed.flat`.
 
     Beyond its nodes from the nearest of its points on.
     """

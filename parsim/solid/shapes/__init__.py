@@ -1,10 +1,11 @@
-"""Shapes of bodies: what exists is listed here, in the order of their numbers."""
+"""Shapes of bodies: what exists is listed here, in the order of their numbers; to kernels a bed is a mesh."""
 
 import functools
 
 import numpy as np
 
 from parsim.case.types import choice
+from parsim.solid.shapes.bed import BedShape
 from parsim.solid.shapes.box import BoxShape
 from parsim.solid.shapes.cylinder import CylinderShape
 from parsim.solid.shapes.dilated_disc import DilatedDiscShape
@@ -15,7 +16,7 @@ from parsim.solid.shapes.prism import PrismShape
 from parsim.solid.shapes.sphere import SphereShape
 
 SHAPES = (BoxShape, SphereShape, DiscShape, PolygonShape, CylinderShape, PrismShape, DilatedDiscShape, MeshShape)
-Shape = choice(*SHAPES)
+Shape = choice(*SHAPES, BedShape)
 
 
 def elements_of(bodies, spacing=None):

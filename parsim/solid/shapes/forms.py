@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.solid.shapes.mesh import flat
+from parsim.solid.shapes.meshed import flat
 from parsim.solid.shapes.polygon import MARGIN
 
 
@@ -12,7 +12,7 @@ class Forms(NamedTuple):
     """Of b bodies: shape (b,), its NUMBER; half (b, 3), m, half edges of the box around it; margin (b,), m, by which
     its core is smaller; sides[first[b]:first[b + 1]], those of the polygon that it is in a plane: outward normal,
     offset, start, length, and corner of the core, eight numbers. planar: of a 2D case, without ends along y. field
-    (n,), m: signed distances of meshes at the nodes of their grids (b, 8), see `mesh.flat`; those alike share them."""
+    (n,), m: signed distances of meshes at the nodes of their grids (b, 8), see `meshed.flat`; alike ones share them."""
 
     shape: np.ndarray
     half: np.ndarray

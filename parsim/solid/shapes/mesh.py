@@ -4,7 +4,6 @@ What takes long to import is imported where a mesh is read.
 """
 
 import functools
-import hashlib
 from pathlib import Path
 from typing import Literal
 
@@ -13,8 +12,8 @@ from pydantic import Field
 
 from parsim.case.types import Moderate
 from parsim.errors import InputError
+from parsim.solid.shapes.meshed import DIGEST, Meshed, cut, mark_of
 from parsim.solid.shapes.samples import Samples, face_of
-from parsim.solid.shapes.shape import ShapeTable
 
 _NODES = 64  # of the field along its longest side, where nothing else is asked for
 _ACROSS = 4  # of them across its shortest side, if that is more
@@ -23,10 +22,8 @@ _CLOSE = 0.1  # share of its volume that the field may be off
 _LEAST_SHARE = 0.1  # of a lattice point that a sample stands for; what is less goes to its neighbours
 
 
-class MeshShape(ShapeTable):
-    """A closed surface of triangles."""
-
-    NUMBER = 7
+class MeshShape(Meshed):
+    """A closed surface of triangles from a file."""
 
     kind: Literal["mesh"] = Field(description="a closed mesh of triangles from a file; 3D only")
     file: str = Field(description="STL, OBJ, PLY or VTU; a path from where the case is, any origin")
@@ -34,42 +31,22 @@ class MeshShape(ShapeTable):
     resolution: Moderate | None = Field(
         None, description="distance between the nodes of its field, m; left out: a 64th of its longest side"
     )
-
-    digest: str | None = Field(None, description="SHA-256 of the file, noted when the case is completed")
+    digest: str | None = Field(None, description=DIGEST)
 
     @property
     def _mesh(self):
-        return _read(self.file, _mark(self.file), self.scale)
+        return _read(self.file, mark_of(self.file), self.scale)
 
     @property
     def field(self):
         """Its signed distances: `geometry.field.Field`."""
-        return _field(self.file, _mark(self.file), self.scale, self.step)
+        return _field(self.file, mark_of(self.file), self.scale, self.step)
 
     @property
     def step(self):
         """Distance between the nodes of its field, m."""
         sides = np.ptp(self._mesh.points, axis=0)
         return self.resolution or float(max(min(sides.max() / _NODES, sides.min() / _ACROSS), sides.max() / _MOST))
-
-    def completed(self):
-        """See `ShapeTable`."""
-        return self if self.digest else self.model_copy(update={"digest": _digest(self.file, _mark(self.file))})
-
-    @property
-    def turn(self):
-        """See `ShapeTable`."""
-        return self._mesh.turn
-
-    @property
-    def half(self):
-        """See `ShapeTable`."""
-        return tuple(float(v) for v in np.abs(self._mesh.points).max(axis=0))
-
-    @property
-    def volume(self):
-        """Volume, m3."""
-        return self._mesh.volume
 
     def told(self):
         """See `ShapeTable`."""
@@ -94,8 +71,7 @@ class MeshShape(ShapeTable):
                 f"{self.told()}: its field, {self.step:.4g} m between nodes, encloses {self._inside():.4g} m3, its "
                 f"triangles {self.volume:.4g}; pieces of it overlap, or shape.resolution must be finer than its walls"
             )
-        if self.digest and self.digest != _digest(self.file, _mark(self.file)):
-            yield f'shape.file = "{self.file}": has changed; its SHA-256 is not {self.digest[:12]}... any more'
+        yield from self.changed()
 
     def _inside(self):
         """Volume, m3, inside by its field."""
@@ -107,42 +83,6 @@ class MeshShape(ShapeTable):
         if max(self.half) < max(room):
             return ""
         return f"; {self.told()} at shape.scale = {self.scale:g}: for a file in millimetres it is 0.001"
-
-    def radius(self, planar):
-        """See `ShapeTable`."""
-        return float(np.linalg.norm(self._mesh.points, axis=1).max())
-
-    def reach(self, direction):
-        """See `ShapeTable`."""
-        return float((self._mesh.points @ direction).max())
-
-    def inertia(self, mass):
-        """See `ShapeTable`."""
-        return [float(moment) * mass / self.volume for moment in self._mesh.moments]
-
-    def thinnest(self, planar):
-        """Radius of the largest ball inside, m."""
-        return float(-self.field.value.min())
-
-    def away(self, points):
-        """See `ShapeTable`; by its field."""
-        from parsim.geometry.field import distances
-
-        return distances(np.asarray(points, float), *flat(self.field))
-
-    def surface(self):
-        """See `ShapeTable`; the last corner of a triangle is there twice."""
-        return self._mesh.points, self._mesh.triangles[:, [0, 1, 2, 2]]
-
-    def elements(self, planar, spacing=None):
-        """See `ShapeTable`: at the corners of its triangles, cut to that size; each has a third of those around."""
-        wanted = spacing or self.thinnest(False)
-        points, triangles = _cut(self._mesh, wanted)
-        share = np.cross(*(points[triangles[:, k]] - points[triangles[:, 0]] for k in (1, 2))) / 6.0
-        area = np.zeros_like(points)
-        for k in range(3):
-            np.add.at(area, triangles[:, k], share)
-        return np.hstack([points, area]), [wanted] * 3
 
     def samples(self, spacing, depth, planar):
         """See `ShapeTable`: a lattice, each point with the share of its cell that is inside; patches of its surface."""
@@ -157,35 +97,13 @@ class MeshShape(ShapeTable):
         share *= self.volume / spacing**3 / share.sum()
         near = -away < depth
         points, share = points[near], share[near]
-        corners, triangles = _cut(self._mesh, spacing)
+        corners, triangles = cut(self._mesh, spacing)
         place = corners[triangles].mean(axis=1)
         normal = 0.5 * np.cross(*(corners[triangles[:, k]] - corners[triangles[:, 0]] for k in (1, 2)))
         area = np.linalg.norm(normal, axis=1)
         place, normal, area = place[area > 0.0], normal[area > 0.0] / area[area > 0.0, None], area[area > 0.0]
         sample = np.array([np.argmin(((points - x) ** 2).sum(axis=1)) for x in place])
         return Samples(points, share, sample, face_of(normal), np.ones(len(area), bool), place, normal, area)
-
-
-def flat(field):
-    """(values (n,), grid (8,)) of a field as kernels take it: where it begins, nodes along the axes, step, start."""
-    return field.value.ravel(), np.array([0.0, *field.value.shape, field.step, *field.start])
-
-
-def _mark(file):
-    """What tells whether a file has been written anew."""
-    try:
-        told = Path(file).stat()
-    except OSError:
-        return None
-    return told.st_mtime_ns, told.st_size
-
-
-@functools.cache
-def _digest(file, mark):
-    try:
-        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
-    except OSError:
-        return None
 
 
 @functools.cache
@@ -201,12 +119,3 @@ def _field(file, mark, scale, step):
 
     mesh = _read(file, mark, scale)
     return field_of(mesh.points, mesh.triangles, step)
-
-
-def _cut(mesh, size):
-    """Points (k, 3), m, and triangles (n, 3) of a mesh, cut until their edges are at most `size`, m, long."""
-    import trimesh
-
-    from parsim.geometry.mesh import joined
-
-    return joined(*trimesh.remesh.subdivide_to_size(mesh.points, mesh.triangles, size, max_iter=20), 1e-6 * size)

@@ -1,0 +1,73 @@
+"""ESRI ASCII rasters (.asc): six lines of names and numbers, then rows of heights from north to south."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.errors import InputError
+from parsim.terrain.height_field import HeightField
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_NEEDED = ("ncols", "nrows", "cellsize")
+
+
+def read(path: Path) -> HeightField:
+    """The heights of a file in its units. Raises InputError."""
+    lines = path.read_text(encoding="utf-8-sig").split("\n")
+    head, count = {}, 0
+    for count, line in enumerate(lines):  # noqa: B007
+        words = line.split()
+        if len(words) != 2 or not words[0][:1].isalpha() or words[0].lower() == "nan":
+            break
+        head[words[0].lower()] = _number(path, *words)
+    missing = [key for key in _NEEDED if key not in head]
+    places = [key for a in "xy" for key in (f"{a}llcorner", f"{a}llcenter") if key in head][:2]
+    missing += [f"{a}llcorner or {a}llcenter" for a in "xy" if not any(key[0] == a for key in places)]
+    if missing:
+        raise InputError(f"{path}: its head lacks {', '.join(missing)}; is it an ESRI ASCII raster?")
+    columns, rows, size = int(head["ncols"]), int(head["nrows"]), head["cellsize"]
+    if min(columns, rows) < 1 or not size > 0.0:
+        raise InputError(f"{path}: ncols = {columns}, nrows = {rows}, cellsize = {size:g}: must be greater than 0")
+    try:
+        values = np.array(" ".join(lines[count:]).split(), float)
+    except ValueError as error:
+        raise InputError(f"{path}: a height is no number: {error}") from None
+    if values.size != columns * rows:
+        raise InputError(
+            f"{path}: holds {values.size} heights; ncols = {columns}, nrows = {rows} need {columns * rows}"
+        )
+    values[(values == head.get("nodata_value", -9999.0)) | ~np.isfinite(values)] = np.nan
+    x, y = (
+        head[key] + size * (np.arange(number) + (0.5 if key.endswith("corner") else 0.0))
+        for key, number in zip(places, (columns, rows), strict=True)
+    )
+    return HeightField(x, y, values.reshape(rows, columns)[::-1].T, (0.5 * size, 0.5 * size))
+
+
+def write(path: Path, field: HeightField) -> None:
+    """Write heights on a grid of square cells."""
+    size = field.x[1] - field.x[0]
+    head = {
+        "ncols": len(field.x),
+        "nrows": len(field.y),
+        "xllcenter": repr(float(field.x[0])),
+        "yllcenter": repr(float(field.y[0])),
+        "cellsize": repr(float(size)),
+        "NODATA_value": -9999,
+    }
+    rows = np.where(np.isnan(field.z), -9999.0, field.z).T[::-1]
+    text = "\n".join(
+        [*(f"{key} {value}" for key, value in head.items()), *(" ".join(map(repr, r.tolist())) for r in rows)]
+    )
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _number(path, key, word):
+    try:
+        return float(word)
+    except ValueError:
+        raise InputError(f"{path}: {key} {word}: must be a number") from None

@@ -1,0 +1,63 @@
+"""Points x y z in columns (.xyz, .txt, .csv): on a grid as they are, others with triangles between them by SciPy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.errors import InputError
+from parsim.terrain.height_field import HeightField, even
+from parsim.terrain.triangles import Triangles
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_FULL = 0.5  # share of the nodes of a grid from which points are taken for one with holes
+
+
+def read(path: Path) -> HeightField | Triangles:
+    """The surface through the points of a file; lines before the first numbers are passed over. Raises InputError."""
+    rows, begun = [], False
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig").split("\n"), 1):
+        words = line.partition("#")[0].replace(",", " ").replace(";", " ").split()
+        if not words:
+            continue
+        try:
+            rows.append([float(word) for word in words[:3]])
+        except ValueError:
+            if begun:
+                raise InputError(f"{path}: line {number}: {line.strip()[:60]}: must be numbers x, y, z") from None
+            continue
+        begun = True
+        if len(words) < 3:
+            raise InputError(f"{path}: line {number}: {line.strip()[:60]}: must be three numbers x, y, z")
+    points = np.array(rows).reshape(-1, 3)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) < 3:
+        raise InputError(f"{path}: holds {len(points)} points; a surface needs three or more")
+    return _grid(points) or _triangles(path, points)
+
+
+def _grid(points):
+    """The grid that points are on, with holes where some are missing, or None."""
+    (x, i), (y, j) = (np.unique(points[:, axis], return_inverse=True) for axis in (0, 1))
+    if not (even(x) and even(y)) or len(points) < _FULL * len(x) * len(y):
+        return None
+    z = np.full((len(x), len(y)), np.nan)
+    z[i, j] = points[:, 2]
+    return HeightField(x, y, z)
+
+
+def _triangles(path, points):
+    try:
+        from scipy.spatial import Delaunay, QhullError
+    except ImportError:
+        raise InputError(
+            f'{path}: its points are on no grid; triangles between them need SciPy: pip install "parsim[terrain]"'
+        ) from None
+    plan = points[:, :2] - points[:, :2].mean(axis=0)
+    try:
+        return Triangles(points, Delaunay(plan).simplices)
+    except QhullError:
+        raise InputError(f"{path}: its points lie on one line; a surface needs others") from None
