@@ -82,14 +82,9 @@ def validate(
     ] = None,
     level: Annotated[str, typer.Option(metavar="LEVEL", help="quick, or full: the long ones too")] = "quick",
     as_json: Annotated[bool, typer.Option("--json", help="print rows as JSON")] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there"),
-    ] = None,
-    ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")] = 1,
-    record: Annotated[
-        Path | None, typer.Option("--record", metavar="CSV", help="bring this table of results up to date")
-    ] = None,
+    out: given.KeptRuns = None,
+    ranks: given.RanksOfEach = 1,
+    record: given.Record = None,
 ) -> int:
     """Run examples and compare them with published and exact numbers; exit code 3 if a bar is missed."""
     from parsim.validate.runs import validate as check
@@ -102,7 +97,7 @@ def study(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML) that holds a table [study]")],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="folder of all runs; one there goes on")],
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")] = 1,
-    ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")] = 1,
+    ranks: given.RanksOfEach = 1,
     threads: given.Threads = None,
     walltime: given.Walltime = None,
     gather: Annotated[bool, typer.Option("--gather", help="make no run, tell what follows of those there are")] = False,

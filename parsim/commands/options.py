@@ -40,3 +40,8 @@ RiverReach = Annotated[
 Scale = Annotated[
     float, typer.Option(min=1e-6, metavar="M", help="m of one unit of the file of a reach: 0.3048 for feet")
 ]
+RanksOfEach = Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")]
+KeptRuns = Annotated[
+    Path | None, typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there")
+]
+Record = Annotated[Path | None, typer.Option("--record", metavar="CSV", help="bring this table of results up to date")]
