@@ -101,9 +101,7 @@ def study(
     threads: given.Threads = None,
     walltime: given.Walltime = None,
     gather: Annotated[bool, typer.Option("--gather", help="make no run, tell what follows of those there are")] = False,
-    slurm: Annotated[
-        bool, typer.Option("--slurm", help="write the script of a Slurm array that makes the runs")
-    ] = False,
+    slurm: given.Slurm = False,
     retry: Annotated[bool, typer.Option("--retry", help="go on with runs that have failed, too")] = False,
 ) -> int:
     """Make many runs of a case, by seeds, tables or bisection, and tell probabilities, quantiles and edges."""
@@ -122,9 +120,7 @@ def resume(
     ranks: given.Ranks = None,
     kernel: Annotated[str | None, typer.Option(metavar="NAME", help="another kernel variant: other last bits")] = None,
     walltime: given.Walltime = None,
-    case: Annotated[
-        Path | None, typer.Option("--case", metavar="CASE", help="go on only if the run is of this case; its end holds")
-    ] = None,
+    case: given.OfCase = None,
     changes: given.Changes = None,
     table: given.TableFile = None,
     row: given.Row = None,

@@ -45,3 +45,7 @@ KeptRuns = Annotated[
     Path | None, typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there")
 ]
 Record = Annotated[Path | None, typer.Option("--record", metavar="CSV", help="bring this table of results up to date")]
+Slurm = Annotated[bool, typer.Option("--slurm", help="write the script of a Slurm array that makes the runs")]
+OfCase = Annotated[
+    Path | None, typer.Option("--case", metavar="CASE", help="go on only if the run is of this case; its end holds")
+]
