@@ -4,7 +4,7 @@
 set -euo pipefail
 # shellcheck source=SCRIPTDIR/../jobs/setup.sh
 source "$(dirname -- "${BASH_SOURCE[0]}")/../jobs/setup.sh"
-set_up pictures tests
+set_up pictures tests terrain
 cd -- "$root"
 (($#)) || set -- --numprocesses 2 --dist loadfile --no-loadscope-reorder
 exec "$python" -m pytest "$@"
