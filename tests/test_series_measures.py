@@ -28,11 +28,11 @@ def swing(period=0.8, damping=0.1, until=4.0):
 def test_means_extremes_and_last_values_of_chosen_rows():
     run = Made(time=[0.0, 0.0, 1.0, 1.0, 2.0, 2.0], body=list("ababab"), x=[1.0, 9.0, 3.0, 8.0, 8.0, 7.0])
     rows = {"body": "a"}
-    assert measures.mean_of(run, "made", "x", 0.0, rows=rows) == 4.0
-    assert measures.mean_of(run, "made", "x", 1.0, before=1.5, rows=rows) == 3.0
-    assert measures.most_of(run, "made", "x", rows=rows, over=2.0) == 4.0
-    assert measures.most_of(run, "made", "x", after=1.0, rows={"body": "b"}) == 8.0
-    assert measures.last_of(run, "made", "x", rows=rows) == 8.0
+    assert measures.mean(run, "made", "x", rows) == 4.0
+    assert measures.mean(run, "made", "x", rows, 1.0, 1.5) == 3.0
+    assert measures.maximum(run, "made", "x", rows=rows, over=2.0) == 4.0
+    assert measures.maximum(run, "made", "x", after=1.0, rows={"body": "b"}) == 8.0
+    assert measures.last(run, "made", "x", rows=rows) == 8.0
 
 
 def test_a_value_is_reached_between_rows():

@@ -62,7 +62,6 @@ A, B = {"body": "A"}, {"body": "B"}
     ({"kind": "last", "rows": A, "below": 0.0}, False),
     ({"kind": "last", "rows": B, "above": 2.0, "below": 2.5}, True),
     ({"kind": "last", "rows": B, "above": 2.0, "below": 2.2}, False),
-    ({"kind": "mean_of", "rows": A, "after": 0.0}, 0.375),
 ])  # fmt: skip
 def test_outcomes_of_a_known_series(keys, value, run):
     outcome = asked(series="places", **{"column": "z"} | keys)

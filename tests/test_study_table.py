@@ -70,7 +70,7 @@ def test_the_schema_knows_the_study_and_all_outcomes(capsys):
 @pytest.mark.parametrize(("text", "said"), [
     ("", "study.outcome: missing; what is asked of each finished run"),
     (NUMBER, "study: varies nothing; give seeds, table, grid or bisection"),
-    ('outcome = {kind = "lst"}', "study.outcome.kind = 'lst': must be 'last'"),
+    ('outcome = {kind = "lst"}', "did you mean last?"),
     ('outcome = {kind = "last", series = "bodies"}\n' + SEEDS % "", "study.outcome.column: missing"),
     (NUMBER.replace("column", "colum") + SEEDS % "", "study.outcome.colum: unknown key; did you mean study.outcome.c"),
     (NUMBER.replace('"bodies"', '"bodyes"') + SEEDS % "", "study.outcome.series = 'bodyes': there is no such one"),

@@ -19,32 +19,13 @@ from parsim.observe.observers import TABLES
 from parsim.river import verdicts
 from parsim.river.reader import river_of
 from parsim.validate.measures import MEASURES
+from parsim.validate.series_measures import track
 
 if TYPE_CHECKING:
     from parsim.output.reader import Run
 
 Text = Annotated[str, Strict()]
 _STRICT: dict[Any, Any] = {float: Real, int: Whole, str: Text}
-
-
-def last(run: Run, series: str, column: str, rows: dict[str, str] | None = None) -> float:
-    """Last value of a column of a series, of the rows where other columns are as told in `rows`."""
-    return float(_track(run, series, column, rows, -math.inf)[1][-1])
-
-
-def mean(run: Run, series: str, column: str, rows: dict[str, str] | None = None, after: float = 0.0) -> float:
-    """Mean of a column of a series from the time `after`, s, on, of the rows as told in `rows`."""
-    return float(_rows(run, series, column, rows, after)[1].mean())
-
-
-def maximum(run: Run, series: str, column: str, rows: dict[str, str] | None = None, after: float = 0.0) -> float:
-    """Largest value of a column of a series from the time `after`, s, on, of the rows as told in `rows`."""
-    return float(_rows(run, series, column, rows, after)[1].max())
-
-
-def minimum(run: Run, series: str, column: str, rows: dict[str, str] | None = None, after: float = 0.0) -> float:
-    """Smallest value of a column of a series from the time `after`, s, on, of the rows as told in `rows`."""
-    return float(_rows(run, series, column, rows, after)[1].min())
 
 
 def crossed(
@@ -58,7 +39,7 @@ def crossing_time(
     run: Run, series: str, column: str, level: float, rows: dict[str, str] | None = None, after: float = 0.0
 ) -> float:
     """Time, s, at which a column of a series first gets to a level, between its rows by a straight line; else none."""
-    times, values = _track(run, series, column, rows, after)
+    times, values = track(run, series, column, rows, after)
     ahead = (values - level) * (1.0 if values[0] < level else -1.0)  # negative until the level is reached
     reached = np.flatnonzero(ahead >= 0.0)
     if not reached.size:
@@ -100,29 +81,6 @@ def _river(run):
     if run.case.get("measure") is None:
         raise InputError("the case has no table measure")
     return river_of(run)
-
-
-def _rows(run, series, column, rows, after):
-    """(times, values) of a column where other columns are as told, both (rows,). Raises InputError where none are."""
-    read = run.series(series)
-    here = read["time"] >= after
-    for name, value in (rows or {}).items():
-        chosen = read[name].astype(str) == value
-        if not chosen.any():
-            there = ", ".join(np.unique(read[name].astype(str))) or "none"
-            raise InputError(f"rows.{name} = {value!r}: no such row in the series {series}; there are: {there}")
-        here &= chosen
-    if not here.any():
-        raise InputError(f"the series {series} has no row from t = {after:g} s on")
-    return read["time"][here], read[column][here]
-
-
-def _track(run, series, column, rows, after):
-    """As `_rows`, of one row for each time."""
-    times, values = _rows(run, series, column, rows, after)
-    if np.unique(times).size < times.size:
-        raise InputError(f'the series {series} has several rows at a time; tell one, as by rows = {{body = "A1"}}')
-    return times, values
 
 
 class Asked(Table):
@@ -204,17 +162,6 @@ def _table(function):
 
 OUTCOMES: dict[str, Callable[..., float | bool]] = {
     function.__name__: function
-    for function in (
-        last,
-        mean,
-        maximum,
-        minimum,
-        crossed,
-        crossing_time,
-        jam_forms,
-        jam_holds,
-        block_goes_under,
-        *MEASURES.values(),
-    )
+    for function in (crossed, crossing_time, jam_forms, jam_holds, block_goes_under, *MEASURES.values())
 }
 Outcome = choice(*map(_table, OUTCOMES.values()))

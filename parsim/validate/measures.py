@@ -7,8 +7,8 @@ MEASURES = {
     function.__name__: function
     for function in (
         bodies.apex, bodies.last_speed, bodies.mean_place, bodies.run_out, bodies.pile_height, bodies.floor_force,
-        bodies.carried, bodies.tilt, bodies.rests, bodies.height_over, bodies.drift, series.mean_of, series.most_of,
-        series.last_of, series.first_over, series.noise_of, series.period_of, series.damping_of, series.off_curve,
-        series.balance, series.energy_made, series.off_log_law, series.off_parabola,
+        bodies.carried, bodies.tilt, bodies.rests, bodies.height_over, bodies.drift, series.mean, series.maximum,
+        series.minimum, series.last, series.first_over, series.noise_of, series.period_of, series.damping_of,
+        series.off_curve, series.balance, series.energy_made, series.off_log_law, series.off_parabola,
     )
 }  # fmt: skip

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from parsim.errors import InputError
 from parsim.report.measures import mean_profile
 
 if TYPE_CHECKING:
@@ -15,34 +16,61 @@ if TYPE_CHECKING:
 Rows = dict[str, str]
 
 
-def _column(run: Run, series: str, column: str, rows: Rows | None) -> tuple[np.ndarray, np.ndarray]:
-    """Times, s, and values of a column of a series, of the rows where other columns are as told."""
+def chosen(
+    run: Run, series: str, column: str, rows: Rows | None = None, after: float = -math.inf
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times, s, and values of a column of a series from a time on, of the rows where other columns are as told.
+
+    Raises InputError where there are none.
+    """
     read = run.series(series)
-    here = np.ones(read["time"].size, bool)
+    here = read["time"] >= after
     for name, value in (rows or {}).items():
-        here &= read[name] == value
+        meant = read[name].astype(str) == value
+        if not meant.any():
+            there = ", ".join(np.unique(read[name].astype(str))) or "none"
+            raise InputError(f"rows.{name} = {value!r}: no such row in the series {series}; there are: {there}")
+        here &= meant
+    if not here.any():
+        raise InputError(f"the series {series} has no row from t = {after:g} s on")
     return read["time"][here], read[column][here]
 
 
-def mean_of(
-    run: Run, series: str, column: str, after: float, before: float = math.inf, rows: Rows | None = None
+def track(
+    run: Run, series: str, column: str, rows: Rows | None = None, after: float = -math.inf
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `chosen`, of one row for each time. Raises InputError where there are more."""
+    times, values = chosen(run, series, column, rows, after)
+    if np.unique(times).size < times.size:
+        raise InputError(f'the series {series} has several rows at a time; tell one, as by rows = {{body = "A1"}}')
+    return times, values
+
+
+def mean(
+    run: Run, series: str, column: str, rows: Rows | None = None, after: float = 0.0, before: float | None = None
 ) -> float:
-    """Mean of a column of a series between two times, s, of the rows where other columns are as told."""
-    times, values = _column(run, series, column, rows)
-    return float(values[(times >= after) & (times <= before)].mean())
+    """Mean of a column of a series between two times, s, of the rows where other columns are as told in `rows`."""
+    times, values = chosen(run, series, column, rows, after)
+    return float(values[times <= (math.inf if before is None else before)].mean())
 
 
-def most_of(
-    run: Run, series: str, column: str, after: float = -math.inf, rows: Rows | None = None, over: float = 1.0
+def maximum(
+    run: Run, series: str, column: str, rows: Rows | None = None, after: float = 0.0, over: float = 1.0
 ) -> float:
-    """Largest value of a column of a series after a time, s, over `over`."""
-    times, values = _column(run, series, column, rows)
-    return float(values[times >= after].max() / over)
+    """Largest value of a column of a series from a time, s, on, over `over`, of the rows as told in `rows`."""
+    return float(chosen(run, series, column, rows, after)[1].max() / over)
 
 
-def last_of(run: Run, series: str, column: str, rows: Rows | None = None) -> float:
-    """Last value of a column of a series."""
-    return float(_column(run, series, column, rows)[1][-1])
+def minimum(
+    run: Run, series: str, column: str, rows: Rows | None = None, after: float = 0.0, over: float = 1.0
+) -> float:
+    """Smallest value of a column of a series from a time, s, on, over `over`, of the rows as told in `rows`."""
+    return float(chosen(run, series, column, rows, after)[1].min() / over)
+
+
+def last(run: Run, series: str, column: str, rows: Rows | None = None) -> float:
+    """Last value of a column of a series, of the rows where other columns are as told in `rows`."""
+    return float(track(run, series, column, rows)[1][-1])
 
 
 def first_over(
@@ -59,7 +87,7 @@ def first_over(
 
     Since it first reached `from_value`, if that is told; `dry`: what counts where there was nothing to read.
     """
-    times, values = _column(run, series, column, rows)
+    times, values = chosen(run, series, column, rows)
     values = np.nan_to_num(values, nan=dry)
     begin = 0.0 if from_value is None else _first(times, values, from_value)
     return (_first(times, values, value) - begin) / over
@@ -74,7 +102,7 @@ def _first(times: np.ndarray, values: np.ndarray, value: float) -> float:
 
 def period_of(run: Run, series: str, column: str, zero: float, rows: Rows | None = None) -> float:
     """Period, s, of a swing about `zero`: twice the mean time between the times at which a column is there."""
-    times, values = _column(run, series, column, rows)
+    times, values = chosen(run, series, column, rows)
     crossed = np.flatnonzero(np.diff(values < zero))
     share = (zero - values[crossed]) / (values[crossed + 1] - values[crossed])
     at = times[crossed] + share * (times[crossed + 1] - times[crossed])
@@ -83,7 +111,7 @@ def period_of(run: Run, series: str, column: str, zero: float, rows: Rows | None
 
 def damping_of(run: Run, series: str, column: str, zero: float, rows: Rows | None = None) -> float:
     """Damping over the critical one, by the logarithm of the first three half swings about `zero` in turn."""
-    values = _column(run, series, column, rows)[1] - zero
+    values = chosen(run, series, column, rows)[1] - zero
     crossed = np.flatnonzero(np.diff(values < 0.0))
     tops = [np.abs(half).max() for half in np.split(values, crossed + 1)[:4]]
     loss = math.log(tops[0] / tops[-1]) / (len(tops) - 1)  # of half a period
@@ -94,7 +122,7 @@ def noise_of(
     run: Run, series: str, column: str, after: float, before: float, width: float, over: float, rows: Rows | None = None
 ) -> float:
     """Root of the mean square of what a column is off its own running mean over a width, s, between two times, s."""
-    times, values = _column(run, series, column, rows)
+    times, values = chosen(run, series, column, rows)
     half = max(round(0.5 * width / np.median(np.diff(times))), 1)
     smooth = np.convolve(values, np.ones(2 * half + 1) / (2 * half + 1), "same")
     here = (times >= after) & (times <= before)
@@ -116,7 +144,7 @@ def scaled(
 
     `dry`: what counts where there was nothing to read.
     """
-    times, values = _column(run, series, column, rows)
+    times, values = chosen(run, series, column, rows)
     return (times - start) / time_unit, (np.nan_to_num(values, nan=dry) - zero) / unit
 
 
