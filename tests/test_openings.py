@@ -127,19 +127,31 @@ def test_normal_depth(flow, manning, slope):
 def test_the_level_is_that_of_rating_normal_flow_or_a_table(outlet, level):
     out = simulation(reach(outlet=outlet)).solids.openings.outlet
     for _ in range(3):
-        out.follow(0.1, 0.4, 0.5, 0.001)
+        out.follow(0.1, 0.4, 0.4, 0.5, 0.001)
     assert out.level == pytest.approx(level, rel=1e-9)
 
 
 def test_a_wave_from_inside_is_let_out():
     """The level gives way such that the invariant that runs in, V - 2 sqrt(g h), stays: dV = sqrt(g / h) dh."""
     out = simulation(reach()).solids.openings.outlet
-    out.follow(0.1, 0.4, 0.5, 1e-6)
+    out.follow(0.1, 0.4, 0.4, 0.5, 1e-6)
     rise, wave = 0.002, math.sqrt(9.81 / 0.1)
-    out.follow(0.1 + rise, 0.4 + wave * rise, 0.5, 1e-6)
+    out.follow(0.1 + rise, 0.4 + wave * rise, 0.4, 0.5, 1e-6)
     assert out.level - 0.1 == pytest.approx(rise, rel=0.03)
-    out.follow(0.1 + rise, 0.4 - wave * rise, 0.5, 1e-6)
+    out.follow(0.1 + rise, 0.4 - wave * rise, 0.4, 0.5, 1e-6)
     assert abs(out.level - 0.1) < 0.03 * rise, "and what runs in is not answered"
+
+
+def test_the_water_beyond_goes_along_with_that_before():
+    out = simulation(reach()).solids.openings.outlet
+    for edge in (0.4, 0.5, 0.5, 0.5):
+        out.follow(0.1, 0.4, edge, 0.5, 1.0)
+        gained = out._gain
+        assert gained == pytest.approx(0.1 if out._edge == 0.5 and edge == 0.5 and gained else 0.0)
+    out.follow(0.1, 0.4, 0.3, 0.5, 0.001)
+    assert out._gain == pytest.approx(-0.2 * 0.001 / (0.1 * math.sqrt(0.1 / 9.81)))
+    out.follow(0.1, 0.4, math.nan, 0.5, 0.001)
+    assert out._gain == 0.0, "no water is there"
 
 
 def test_openings_go_on_from_what_they_kept():

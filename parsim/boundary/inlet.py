@@ -16,7 +16,7 @@ import numpy as np
 from parsim.boundary.wall_samples import lattice_axis
 from parsim.case.course import at_time
 from parsim.case.fill import water_at
-from parsim.particles.lattice import Lattice
+from parsim.particles.lattice import lattice_of
 from parsim.particles.state import FLUID, INLET, Particles, make_id
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Inlet:
         self._y, self._z = y.ravel(), z.ravel()
         self._area = l0 if case.dimensions == 2 else l0 * l0
         self._lag = _LAG * np.sqrt(case.depth / -case.gravity[2])
-        self._id = sum(Lattice(fill.min, fill.max, l0, case.axes).size for fill in case.water.fill)
+        self._id = sum(lattice_of(case, fill).size for fill in case.water.fill)
         standing = water_at(case.water.fill, self.x + 0.5 * l0, 0.5 * (case.box.min[1] + case.box.max[1]))
         self.level, self.discharge = standing[1] if standing else self._floor, 0.0
         count = self._y.size

@@ -1,9 +1,10 @@
-"""Water that goes out: a zone beyond the side where it keeps the velocity that it came with, under given pressure.
+"""Water that goes out: a zone beyond the side where it goes on with the water before it, under given pressure.
 
 Beyond the side, over the depth of the support, the pressure is that of water at rest with the level there; the
-particles go on as they came, not backward, and are taken out at its end. So the water inside feels a level and nothing
-else. A wave from inside shows in the Riemann invariant V + 2 sqrt(g h) that runs out; the level gives way to it by so
-much that the one that runs in stays what it is on the average.
+particles go on as they came, faster and slower with the water before the side, not backward, and are taken out at its
+end. So the water inside feels a level and nothing else. A wave from inside shows in the Riemann invariant
+V + 2 sqrt(g h) that runs out; the level gives way to it by so much that the one that runs in stays what it is on the
+average.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from parsim.particles.state import Particles
 
 _TRAVELS = 5.0  # H / V, over which discharge and the outgoing invariant are averaged
+_LAG = 0.1  # sqrt(H / g), of the velocity before the side that the zone follows: sound is not to shake it
 
 
 class Outlet:
@@ -39,7 +41,8 @@ class Outlet:
         self._floor, self._gravity = case.box.min[2], -case.gravity[2]
         self._width = 1.0 if case.dimensions == 2 else case.box.size[1]
         self._head = case.water.density * self._gravity
-        self.discharge = self._invariant = math.nan
+        self.discharge = self._invariant = self._edge = math.nan
+        self._gain = 0.0
         standing = water_at(case.water.fill, self.x - 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1]))
         self.level = standing[1] if standing else self._floor
         if self._side.level is not None:
@@ -48,8 +51,11 @@ class Outlet:
         self._near = self._at = np.zeros(0, np.int64)
         self._speed, self._true, self._real = np.zeros(0), np.zeros(0, bool), slice(0, 0)
 
-    def follow(self, depth: float, speed: float, time: float, dt: float) -> None:
-        """Set the level of the next step by what was seen inside over dt, s: mean depth, m, and speed, m/s."""
+    def follow(self, depth: float, speed: float, edge: float, time: float, dt: float) -> None:
+        """Set the level of the next step by what was seen inside over dt, s: mean depth, m, and speed, m/s.
+
+        edge, m/s: the mean speed right before the side.
+        """
         depth = max(depth, self._case.spacing) if math.isfinite(depth) else self._case.spacing
         speed = speed if math.isfinite(speed) else 0.0
         wave, flow = math.sqrt(self._gravity * depth), speed * depth * self._width
@@ -58,10 +64,20 @@ class Outlet:
         lag = _TRAVELS * depth / max(abs(speed), 0.1 * wave)
         share = min(dt / lag, 1.0)
         self.discharge += share * (flow - self.discharge)
+        self._pass_on(edge, min(dt / (_LAG * math.sqrt(depth / self._gravity)), 1.0))
         out = speed + 2.0 * wave
         self._invariant += share * (out - self._invariant)
         rise = 0.5 * self._side.absorb * (out - self._invariant) * math.sqrt(depth / self._gravity)
         self.level = max(self._asked(time) + rise, self._floor)
+
+    def _pass_on(self, edge, share):
+        """Let the zone go faster or slower with the water before it, a `share` of what is wanting in this step."""
+        if not math.isfinite(edge):
+            self._gain = 0.0
+            return
+        before = edge if math.isnan(self._edge) else self._edge
+        self._edge = before + share * (edge - before)
+        self._gain = self._edge - before
 
     def _asked(self, time):
         """The level without waves, m."""
@@ -81,15 +97,15 @@ class Outlet:
         self._real = own
 
     def hold(self, p: Particles, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> None:
-        """Give the water in the zone its pressure, and keep what velocity it has."""
+        """Give the water in the zone its pressure, and note what velocity it goes on with."""
         at = self._at = self._near[p.x[self._near] > self.x]
         p.p[at] = self._head * np.maximum(self.level - p.z[at], 0.0)
         for name, values in at_rest(p.p[at]).items():
             getattr(p, name)[at] = values
-        self._speed, self._true = p.u[at].copy(), p.image[at] == 0
+        self._speed, self._true = p.u[at] + self._gain, p.image[at] == 0
 
     def release(self, p: Particles) -> None:
-        """Give the water in the zone back the velocity that it had, downstream."""
+        """Give the water in the zone the velocity that it goes on with, downstream."""
         at = self._at
         p.u[at] = np.maximum(self._speed, 0.0)
         p.v[at] = p.w[at] = 0.0
@@ -101,11 +117,12 @@ class Outlet:
 
     def kept(self) -> dict[str, np.ndarray]:
         """What a restart needs."""
-        return {"outlet": np.array([self.level, self.discharge, self._invariant, float(self.removed)])}
+        held = [self.level, self.discharge, self._invariant, self._edge, self._gain, float(self.removed)]
+        return {"outlet": np.array(held)}
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
-        self.level, self.discharge, self._invariant, removed = map(float, kept["outlet"])
+        self.level, self.discharge, self._invariant, self._edge, self._gain, removed = map(float, kept["outlet"])
         self.removed = int(removed)
 
 

@@ -35,6 +35,14 @@ def level_over(fills, fill, x, y):
     return level
 
 
+def corners(case, fill):
+    """Lowest and highest corner (3,), m, of the particles of a fill: at an outlet it goes on over the zone beyond."""
+    high, end = fill.max, case.box.max[0]
+    if case.box.faces.x_max.kind == "outlet" and high[0] >= end - TOUCH:
+        high = (end + case.layers * case.spacing, *high[1:])
+    return fill.min, high
+
+
 def profile_shares(fill, z):
     """The velocity at heights z (n,) over the mean of the fill: (n,)."""
     if fill.profile is None:

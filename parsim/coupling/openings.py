@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.fluid.scheme import Flow
 
-_NEAR, _FAR = 0.5, 1.5  # depths inside, between which the water is looked at
-_INSIDE, _OUTSIDE, _BACK = 0, 1, 2  # rows of the sums: at the inlet, at the outlet, what was kept from going back
+_INLET = 0.5, 1.5  # depths from the inlet, between which its level is looked for
+_OUTLET = 0.0, 0.5  # the same of the outlet; from further off a wave would be answered before it is there
+_EDGE = 4.0  # spacings before the outlet, whose water the zone beyond it goes along with
+_INSIDE, _OUTSIDE, _BEFORE, _BACK = range(4)  # rows of the sums: inlet, outlet, right before it, kept from going back
 
 
 class Openings:
@@ -31,7 +33,7 @@ class Openings:
         faces, scale = case.box.faces, scales(case)
         self.inlet = Inlet(case, layers) if faces.x_min.kind == "inlet" else None
         self.outlet = Outlet(case, layers) if faces.x_max.kind == "outlet" else None
-        self._depth, self._floor = case.depth, case.box.min[2]
+        self._depth, self._floor, self._spacing = case.depth, case.box.min[2], case.spacing
         self._head = case.water.density * -case.gravity[2]
         self._units = np.array([scale.length, scale.length / scale.time, 1.0])
         self._back = np.zeros(2)
@@ -51,25 +53,29 @@ class Openings:
             return
         p, own, level = flow.particles, flow.near.fluid, np.full(2, np.nan)
         values, rows = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
-        for row, place in ((_INSIDE, self.inlet and self.inlet.x), (_OUTSIDE, self.outlet and self.outlet.x)):
-            if place is None:
-                continue
-            away = (p.x[own] - place) * (1.0 if row == _INSIDE else -1.0)
-            at = own[(away > _NEAR * self._depth) & (away < _FAR * self._depth) & (p.surface[own] != DETACHED)]
+        looks = [(_INSIDE, p.x[own] - self.inlet.x, _INLET)] if self.inlet else []
+        looks += [(_OUTSIDE, self.outlet.x - p.x[own], _OUTLET)] if self.outlet else []
+        for row, away, (near, far) in looks:
+            at = own[(away > near * self._depth) & (away < far * self._depth) & (p.surface[own] != DETACHED)]
             values.append(np.stack([p.z[at] + p.p[at] / self._head, p.u[at], np.ones(at.size)], axis=1))
             rows.append(np.full(at.size, row))
         if self.outlet:
+            away = self.outlet.x - p.x[own]
+            at = own[(away > 0.0) & (away < _EDGE * self._spacing) & (p.surface[own] != DETACHED)]
+            values.append(np.stack([np.zeros(at.size), p.u[at], np.ones(at.size)], axis=1))
+            rows.append(np.full(at.size, _BEFORE))
             turned = self.outlet.turned().astype(float)
             values.append(np.stack([turned, np.zeros(turned.size), np.ones(turned.size)], axis=1))
             rows.append(np.full(turned.size, _BACK))
-        sums = flow.domain.sum(np.concatenate(values), self._units, np.concatenate(rows), 3)
+        sums = flow.domain.sum(np.concatenate(values), self._units, np.concatenate(rows), 4)
         with np.errstate(invalid="ignore"):
             level, speed = sums[:, 0] / sums[:, 2], sums[:, 1] / sums[:, 2]
         self._back += sums[_BACK, [0, 2]]
         if self.inlet:
             self.inlet.follow(float(level[_INSIDE]), time, dt)
         if self.outlet:
-            self.outlet.follow(float(level[_OUTSIDE]) - self._floor, float(speed[_OUTSIDE]), time, dt)
+            seen = float(level[_OUTSIDE]) - self._floor, float(speed[_OUTSIDE]), float(speed[_BEFORE])
+            self.outlet.follow(*seen, time, dt)
 
     def emit(self, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> Particles | None:
         """The water that has come in since it was asked last, the same on all ranks; None without an inlet."""

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from parsim.case.fill import corners
+
 
 class Lattice:
     """Even points in a box with about the spacing, numbered with z fastest; an axis not in `axes` keeps its middle.
@@ -25,3 +27,9 @@ class Lattice:
         """Numbers of the points whose three indices are all `wanted`, by axis: bool (points of that row,)."""
         grid = np.ix_(*(np.flatnonzero(rows) for rows in wanted))
         return np.ravel_multi_index(grid, [row.size for row in self.rows]).ravel()
+
+
+def lattice_of(case, fill):
+    """The `Lattice` of a fill of a case."""
+    low, high = corners(case, fill)
+    return Lattice(low, high, case.spacing, case.axes)

@@ -13,7 +13,7 @@ import numpy as np
 
 from parsim.case.fill import level_over, profile_shares
 from parsim.geometry.shuffle import scatter, swayed
-from parsim.particles.lattice import Lattice
+from parsim.particles.lattice import Lattice, lattice_of
 from parsim.particles.state import FLUID, Particles, make_id
 from parsim.run.near_bodies import Beside
 
@@ -108,7 +108,7 @@ def disordered(points: Lattice, number: np.ndarray, first: int, share: float, ax
 
 def columns(case: Case) -> tuple[np.ndarray, np.ndarray]:
     """Where the lattice planes across x of all fills are (n,), m, and how many points each has (n,)."""
-    fills = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
+    fills = [lattice_of(case, fill) for fill in case.water.fill]
     x = [points.rows[0] for points in fills]
     count = [np.full(points.rows[0].size, points.size // points.rows[0].size) for points in fills]
     return np.concatenate([np.zeros(0), *x]), np.concatenate([np.zeros(0), *count])
@@ -126,7 +126,7 @@ def water(
     Ids count the points of all fills, so that they are the same for any slab. Velocities are those of the fills, but
     for water that settles first: see `flow`.
     """
-    lattices = [Lattice(fill.min, fill.max, case.spacing, case.axes) for fill in case.water.fill]
+    lattices = [lattice_of(case, fill) for fill in case.water.fill]
     parts, number, taken = [], 0, taken_by_bodies(lattices, case, bodies, comm)
     for fill, points in zip(case.water.fill, lattices, strict=True):
         x, y, z = points.rows
@@ -168,7 +168,7 @@ def flow(case: Case, p: Particles) -> None:
     """Give the fluid among the particles `p` the velocity of the fill it is from, at the height where it is."""
     first = 0
     for fill in case.water.fill:
-        last = first + Lattice(fill.min, fill.max, case.spacing, case.axes).size
+        last = first + lattice_of(case, fill).size
         at = np.flatnonzero((p.kind == FLUID) & (p.id >= make_id(FLUID, first)) & (p.id < make_id(FLUID, last)))
         first = last
         if not any(fill.velocity):  # water at rest keeps what motion is left in it
