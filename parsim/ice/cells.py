@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.ice.draw import area_of
-from parsim.ice.outlines import Outlines, gaps
+from parsim.ice.outlines import Outlines, gaps, near
 
 if TYPE_CHECKING:
     from parsim.ice.place import Region
@@ -51,8 +51,6 @@ def cut(
 def _neighbours(x, y, radius):
     """(for each site its neighbours, nearest first, in one row (m,); for each rank the sites that have so many, and
     where in the row that neighbour is)."""
-    from parsim.ice.outlines import near
-
     box = _FAR * radius[:, None] * np.array([[-1.0, 1.0, 1.0, -1.0]])
     tall = _FAR * radius[:, None] * np.array([[-1.0, -1.0, 1.0, 1.0]])
     i, j = near(Outlines(x[:, None] + box, y[:, None] + tall, x, y, radius, radius), 0.0)

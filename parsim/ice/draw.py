@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from parsim.ice.laws import LawTable
 
-SHAPES = ("box", "disc", "polygon")
 LEAST_CORNERS, MOST_CORNERS = 5, 8  # of a polygon
 _UNEVEN = 0.6  # share of the angle between two corners by which they may be off
 _ROUND = 24  # sides of the polygon around a disc

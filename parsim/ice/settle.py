@@ -14,7 +14,6 @@ from parsim.ice.outlines import Outlines, gaps, joined, moved, near
 if TYPE_CHECKING:
     from parsim.ice.place import Region
 
-ROUNDS = 3000
 _STEP = 1.3  # of the mean of what a floe's pairs want
 _KEPT = 0.85  # of the last move: what is crowded spreads faster
 _LOOK, _FALL = 100, 0.9  # rounds after which what is lacking must have fallen to this share of itself
@@ -33,8 +32,11 @@ class Settled(NamedTuple):
     lack: np.ndarray
 
 
-def settle(own: Outlines, start: Settled, fixed: Outlines, region: Region, gap: float, rounds: int = ROUNDS) -> Settled:
-    """Floes with outlines `own`, about their centres, pushed apart and away from what is `fixed`, in a region."""
+def settle(own: Outlines, start: Settled, fixed: Outlines, region: Region, gap: float, rounds: int) -> Settled:
+    """Floes with outlines `own`, about their centres, pushed apart and away from what is `fixed`, in a region.
+
+    Ends after so many rounds, or when what is lacking hardly falls any more; then some still lack some.
+    """
     n = len(own.cx)
     mean = float(own.radius.sum()) / n
     skin, more = _SKIN * mean, _MORE * mean
