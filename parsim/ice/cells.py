@@ -16,9 +16,12 @@ from parsim.ice.outlines import Outlines, gaps, near
 if TYPE_CHECKING:
     from parsim.ice.place import Region
 
-ROUNDS = 150
+ROUNDS = 300
 _FAR = 2.4  # sites that cut each other are at most so many of their radii apart
-_GROWTH = 0.25  # of the weight, m2, over the area that a cell lacks: a side's length over twice that between sites, 1.7
+_GROWTH = 0.2  # of the weight, m2, over the area that a cell lacks: a side's length over twice that between sites, 1.7
+_KEPT = 0.8  # of the last change of weights: what is lacking far off comes sooner
+_MOVE = 0.1  # of the way to the centre of its cell that a site goes in a round
+_MOVES = 0.4  # share of the rounds after which sites stay where they are, for areas to come right
 _EVERY = 10  # rounds after which neighbours are sought anew
 _SHORT = 0.12  # of the root of the area: shorter sides are left out
 _ROOM = 24  # corners of a cell at most, while it is cut
@@ -31,20 +34,19 @@ def cut(
     region; None where these areas are not reached."""
     x, y = sites.T.copy()
     radius = np.sqrt(areas / np.pi)
-    weight = radius**2
-    for turn in range(rounds):
-        if turn % _EVERY == 0:
+    weight, change = radius**2, np.zeros(len(x))
+    for done in range(rounds):
+        if done % _EVERY == 0:
             order, ranks = _neighbours(x, y, radius)
             walls = _lines_off(fixed, x, y, radius)
         cells = _cells(x, y, weight, order, ranks, walls, region, gap)
         held, cx, cy = _moments(*cells)
-        if (held > 1.01 * areas).all():
-            made = [_plain(np.stack(cell, 1), area) for cell, area in zip(zip(*cells, strict=True), areas, strict=True)]
-            if all(own is not None for own in made):
-                return made
-        some = held > 0.0
-        x, y = np.where(some, cx, x), np.where(some, cy, y)
-        weight = weight + _GROWTH * (areas * held.sum() / areas.sum() - held)
+        if (held > areas).all():
+            return [_plain(np.stack(cell, 1), area) for cell, area in zip(zip(*cells, strict=True), areas, strict=True)]
+        some = (held > 0.0) & (done < _MOVES * rounds)
+        x, y = np.where(some, x + _MOVE * (cx - x), x), np.where(some, y + _MOVE * (cy - y), y)
+        change = _KEPT * change + _GROWTH * (areas * held.sum() / areas.sum() - held)
+        weight = weight + change
     return None
 
 
@@ -132,18 +134,13 @@ def _moments(x, y):
 
 
 def _plain(corners, area):
-    """A polygon without its short sides, shrunk to this area about its centre; None if it is smaller."""
-    least = _SHORT * np.sqrt(area)
-    kept = [p for p, q in zip(corners, np.roll(corners, -1, axis=0), strict=True) if (p != q).any()]
-    while len(kept) > 3:
-        lengths = [float(np.hypot(*(q - p))) for p, q in zip(kept, kept[1:] + kept[:1], strict=True)]
-        shortest = int(np.argmin(lengths))
-        if lengths[shortest] >= least:
+    """A polygon without its short sides, as far as it is large enough without, shrunk to this area about its centre."""
+    made = corners[(corners != np.roll(corners, -1, axis=0)).any(axis=1)]
+    while len(made) > 3:
+        lengths = np.hypot(*(np.roll(made, -1, axis=0) - made).T)
+        fewer = np.delete(made, int(lengths.argmin()), axis=0)
+        if lengths.min() >= _SHORT * np.sqrt(area) or area_of(fewer - fewer[0]) < area:
             break
-        del kept[shortest]
-    made = np.array(kept)
-    held, cx, cy = (float(part[0]) for part in _moments(made[None, :, 0], made[None, :, 1]))
-    if held < area:
-        return None
-    centre = np.array([cx, cy])
+        made = fewer
+    centre = np.array([float(part[0]) for part in _moments(made[None, :, 0], made[None, :, 1])[1:]])
     return centre + np.sqrt(area / area_of(made - centre)) * (made - centre)
