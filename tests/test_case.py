@@ -17,6 +17,11 @@ FILES = sorted((ROOT / "cases").rglob("[!_]*.toml"))
 NAMES = [str(file.relative_to(ROOT / "cases")) for file in FILES]
 
 
+# what cases are warned of: fills that the spacing does not divide or of few rows, bodies of few particles
+KNOWN = {f"ice_release/{blocks}_blocks_10mm.toml": ["water.fill.1"] for blocks in (4, 9)}
+KNOWN |= {f"marin/{spacing}mm.toml": ["water.fill.0"] for spacing in (20, 40)} | {"one_cube/50mm.toml": ["bodies.cube"]}
+
+
 @pytest.fixture
 def base(tmp_path):
     return write(tmp_path)
@@ -25,8 +30,8 @@ def base(tmp_path):
 @pytest.mark.parametrize("file", FILES, ids=NAMES)
 def test_case_files_are_valid_and_read_back_equal(tmp_path, file):
     case = load(file)
-    thin_bed = ["water.fill.1: 2 particles along z, 0.01 m"] if file.stem.endswith("_10mm") else []
-    assert [warning.split(";")[0] for warning in case.warnings()] == thin_bed
+    told = [warning.split(";")[0].split(":")[0] for warning in case.warnings()]
+    assert told == KNOWN.get(str(file.relative_to(ROOT / "cases")), [])
     (tmp_path / "case.toml").write_text(case.to_toml())
     assert load(tmp_path / "case.toml") == case
 

@@ -42,7 +42,7 @@ BROKEN = {
     "frames of no time": ("3d", ["output.frames=0"], ["output.frames = 0: must be greater than 0"]),
     "poisson out of range": ("3d", ["materials.polypropylene.poisson=0.5"], ["poisson = 0.5: must be less than 0.5"]),
     "unknown scheme": ("3d", ["water.scheme.kind=sph"], ["water.scheme.kind = 'sph': must be 'wcmps'"]),
-    "unknown face": ("3d", ["box.faces.x_min=glass"], ["box.faces.x_min = 'glass': must be 'wall', 'open' or 'per"]),
+    "unknown face": ("3d", ["box.faces.x_min=glass"], ["x_min = 'glass': must be 'wall', 'open', 'periodic', 'inlet'"]),
     "gate faster than sound": ("3d", ["gate.speed=500.0"], ["gate.speed: 500 m/s; must be less than the speed"]),
     "body faster than sound": ("3d", ["bodies.A1.velocity=[0,0,-900]"], ["bodies.A1.velocity, spin: 900 m/s; must be"]),
     "four dimensions": ("3d", ["dimensions=4"], ["dimensions = 4: must be 2 or 3"]),

@@ -48,6 +48,9 @@ sensors = [
 """
 
 
+CHANNELS = {"channel", "openings"}  # series of boxes that water flows through: see the tests of these
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("real")
@@ -60,7 +63,7 @@ def test_every_series_is_written(run):
     assert run.series_names == sorted(TABLES)
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", [name for name in TABLES if name not in CHANNELS])
 def test_every_column_has_rows_of_one_length_and_one_unit(run, name):
     series, units = run.series(name), run.units(name)
     assert list(series) == list(units) and len(series["step"]) > 3

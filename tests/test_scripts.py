@@ -31,7 +31,7 @@ def checkout(tmp_path):
     (root / "a case.toml").write_text("")
     (root / ".venv" / "bin" / "python").write_text(PYTHON)
     (root / ".venv" / "bin" / "python").chmod(0o755)
-    line = 'source "$0"; for extra in pictures tests; do fingerprint >"$venv/stamp-$extra"; done'
+    line = 'source "$0"; for extra in pictures tests terrain; do fingerprint >"$venv/stamp-$extra"; done'
     subprocess.run(["bash", "-c", line, root / "jobs" / "setup.sh"], check=True)
     return root
 
