@@ -22,6 +22,11 @@ def pytest_configure(config):
     os.environ.setdefault("MPIEXEC_TIMEOUT", str(2 * PATIENCE))
 
 
+def pytest_collection_modifyitems(items):
+    """The longest file first, or one of two workers waits for it at the end."""
+    items.sort(key=lambda item: item.path.name != "test_uncompiled.py")
+
+
 def pytest_collection_finish(session):
     """Compile all kernels ahead of many tests; few may need few of them, which are then compiled as they are used."""
     if len(session.items) > MANY and "parsim.machine.jit" in sys.modules:

@@ -26,6 +26,7 @@ def test_the_discharge_comes_to_what_is_asked_and_the_force_to_nothing():
     assert abs(pull.drive) < 0.02 * 0.2 / 0.1, "there is no friction"
 
 
+@pytest.mark.long
 def test_a_slope_that_drives_is_held_back():
     """Tilted gravity alone would make it faster without end: the force holds against it."""
     s = simulation(channel(velocity=0.4, gravity=[0.1, 0.0, -9.81], relaxation=0.1))

@@ -27,6 +27,7 @@ def mean_load(bodies, data=POOL, until=0.3):
     return np.mean(loads, axis=0)
 
 
+@pytest.mark.long
 def test_a_body_on_the_bed_is_lifted_like_any_other():
     (load,) = mean_load([FIXED | {"position": [0.2, 0.5, 0.03]}])
     assert load[2] == pytest.approx(WEIGHT, rel=SPREAD)

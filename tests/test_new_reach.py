@@ -55,6 +55,7 @@ def test_a_reach_of_sections_is_a_case_that_passes_check(tmp_path, capsys, monke
     assert not list(tmp_path.glob(".*"))
 
 
+@pytest.mark.long
 def test_a_raster_is_cut_to_where_it_is_wet(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     raster(tmp_path, channel)

