@@ -31,7 +31,7 @@ _LAG = 0.1  # sqrt(H / g), of the velocity before the side that the zone follows
 class Outlet:
     """The outlet of a case at x_max. level, m: of the water beyond it now; discharge, m3/s (2D: m2/s), its mean.
 
-    removed: particles taken out so far; clipped, passed: times that a particle was kept from going back, and all.
+    end, m: where the zone beyond it ends; removed: particles taken out there so far.
     """
 
     def __init__(self, case: Case, layers: int) -> None:

@@ -9,17 +9,16 @@ import numpy as np
 from parsim.boundary.inlet import Inlet
 from parsim.boundary.outlet import Outlet
 from parsim.case.scales import scales
-from parsim.particles.state import DETACHED, Particles
+from parsim.particles.state import DETACHED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from parsim.case.model import Case
     from parsim.fluid.scheme import Flow
+    from parsim.particles.state import Particles
 
 _INLET = 0.5, 1.5  # depths from the inlet, between which its level is looked for
 _OUTLET = 0.0, 0.5  # the same of the outlet; from further off a wave would be answered before it is there
-_EDGE = 4.0  # spacings before the outlet, whose water the zone beyond it goes along with
+_EDGE = 0.0, 4.0  # spacings before the outlet, whose water the zone beyond it goes along with
 _INSIDE, _OUTSIDE, _BEFORE, _BACK = range(4)  # rows of the sums: inlet, outlet, right before it, kept from going back
 
 
@@ -51,19 +50,17 @@ class Openings:
         """Look at the water inside after a step of dt, s; `time`, s, is when the next begins. Not while it settles."""
         if time < 0.0:
             return
-        p, own, level = flow.particles, flow.near.fluid, np.full(2, np.nan)
+        p, own = flow.particles, flow.near.fluid
         values, rows = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
-        looks = [(_INSIDE, p.x[own] - self.inlet.x, _INLET)] if self.inlet else []
-        looks += [(_OUTSIDE, self.outlet.x - p.x[own], _OUTLET)] if self.outlet else []
-        for row, away, (near, far) in looks:
-            at = own[(away > near * self._depth) & (away < far * self._depth) & (p.surface[own] != DETACHED)]
+        looks = [(_INSIDE, p.x[own] - self.inlet.x, _INLET, self._depth)] if self.inlet else []
+        if self.outlet:
+            away = self.outlet.x - p.x[own]
+            looks += [(_OUTSIDE, away, _OUTLET, self._depth), (_BEFORE, away, _EDGE, self._spacing)]
+        for row, away, (near, far), unit in looks:
+            at = own[(away > near * unit) & (away < far * unit) & (p.surface[own] != DETACHED)]
             values.append(np.stack([p.z[at] + p.p[at] / self._head, p.u[at], np.ones(at.size)], axis=1))
             rows.append(np.full(at.size, row))
         if self.outlet:
-            away = self.outlet.x - p.x[own]
-            at = own[(away > 0.0) & (away < _EDGE * self._spacing) & (p.surface[own] != DETACHED)]
-            values.append(np.stack([np.zeros(at.size), p.u[at], np.ones(at.size)], axis=1))
-            rows.append(np.full(at.size, _BEFORE))
             turned = self.outlet.turned().astype(float)
             values.append(np.stack([turned, np.zeros(turned.size), np.ones(turned.size)], axis=1))
             rows.append(np.full(turned.size, _BACK))
@@ -76,14 +73,6 @@ class Openings:
         if self.outlet:
             seen = float(level[_OUTSIDE]) - self._floor, float(speed[_OUTSIDE]), float(speed[_BEFORE])
             self.outlet.follow(*seen, time, dt)
-
-    def emit(self, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> Particles | None:
-        """The water that has come in since it was asked last, the same on all ranks; None without an inlet."""
-        return self.inlet.emit(at_rest) if self.inlet else None
-
-    def taken(self, fluid: Particles) -> np.ndarray:
-        """Which of the water has come to the end of the zone beyond the outlet: bool (n,)."""
-        return fluid.x >= self.outlet.end if self.outlet else np.zeros(len(fluid), bool)
 
     def find(self, p: Particles, own: slice) -> None:
         """Note where samples and zone are among the particles `p` after a rebuild; `own` are those of this rank."""

@@ -78,7 +78,7 @@ class Solids:
             self.openings.outlet.hold(flow.particles, at_rest)
 
     def release(self, flow):
-        """Give it back the velocity that it had at the start of the step."""
+        """Give it the velocity that it goes on with."""
         if self.openings.outlet:
             self.openings.outlet.release(flow.particles)
 

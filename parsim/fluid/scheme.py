@@ -28,7 +28,7 @@ class Solids(Protocol):
         """Give water beyond an outlet, at the half step, the pressure that is there by the scheme's `at_rest`."""
 
     def release(self, flow):
-        """Give it, at the full step, the velocity that it had."""
+        """Give it, at the full step, the velocity that it goes on with."""
 
     def rub(self, flow):
         """What the water feels of the friction of walls and bodies, slip and share of samples; None where none rubs."""

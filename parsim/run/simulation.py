@@ -152,11 +152,11 @@ class Simulation:
         """Take what has gone out of this rank's water, and give the first rank what has come in: the water then."""
         openings = self.solids.openings
         if openings.outlet:
-            out = openings.taken(fluid)
+            out = fluid.x >= openings.outlet.end
             openings.outlet.removed += self.domain.count(int(out.sum()))[0]
             fluid = fluid.take(~out)
         if openings.inlet:
-            born = openings.emit(self.scheme.at_rest)
+            born = openings.inlet.emit(self.scheme.at_rest)
             fluid = Particles.join([fluid, born]) if self.comm.rank == 0 else fluid
         return fluid
 
