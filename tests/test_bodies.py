@@ -143,6 +143,7 @@ def test_from_case():
         "material": "ice",
         "fixed": False,
         "released": None,
+        "enters": False,
     }
     bodies = (SimpleNamespace(name="a", **body), SimpleNamespace(name="b", **body | {"released": 1.0}))
     case = SimpleNamespace(

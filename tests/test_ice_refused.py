@@ -86,7 +86,7 @@ def test_refused_in_a_plane(change, told):
 
 
 def test_two_fields_of_one_name():
-    with pytest.raises(InputError, match='ice.fields: name = "ice" is given more than once'):
+    with pytest.raises(InputError, match='ice: name = "ice" is given more than once'):
         parse(basin(field(max=[1.0, 1.0]), field(min=[1.2, 0.0])))
 
 

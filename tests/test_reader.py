@@ -48,7 +48,7 @@ sensors = [
 """
 
 
-CHANNELS = {"channel", "openings"}  # series of boxes that water flows through: see the tests of these
+CHANNELS = {"channel", "openings", "ice"}  # series of boxes that water flows through: see the tests of these
 
 
 @pytest.fixture(scope="module")

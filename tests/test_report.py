@@ -23,7 +23,7 @@ from parsim.report import animation, measures, painter, pictures, scene
 from parsim.report.build import build, summary
 from parsim.report.measures import moments
 from parsim.report.page import table
-from parsim.report.sections import bodies, front, profiles, published, speed
+from parsim.report.sections import bodies, flow, front, profiles, published, speed
 from parsim.report.sections.energy import energy_created
 
 VOID = {"meta", "img", "br"}
@@ -282,3 +282,23 @@ def test_a_body_that_has_left_is_not_named(run):
         axes = Figure().add_subplot()
         pictures._names(axes, left, view)
         assert len(axes.texts) == len(left.names) - 1
+
+
+def test_what_flows_through_a_channel_is_shown(tmp_path):
+    run = parsim.open(fake_run.make(tmp_path / "out"))
+    assert not flow.lines(run) and flow.openings(run) is None is flow.channel(run) is flow.ice(run)
+    times = np.linspace(0.0, 1.0, 11)
+    opened = [(i, t, 10 * i, 8 * i, 100 + 2 * i, 100, 0.2, 0.1, 0.21, 0.09, 0.0) for i, t in enumerate(times)]
+    iced = [
+        (i, t, i, i // 2, i - i // 2, 0.1 * i, 0.05 * i, 0.05 * i, 0.0, 1, 2, 0.3, 0.01) for i, t in enumerate(times)
+    ]
+    driven = [(i, t, 0.1, 0.11, 0.01, 0.02, 0.002) for i, t in enumerate(times)]
+    for name, rows in (("openings", opened), ("ice", iced), ("channel", driven)):
+        fake_run._table(run.folder / "series", name, rows)
+    run = parsim.open(run.folder)
+    said = flow.lines(run)
+    assert said[0] == "100 particles came in, 80 went out; the account is off by 0."
+    assert said[1].startswith(
+        "10 floes came in, 5 went out, 5 are inside; the way in was blocked for 0.3 s, 2 were due"
+    )
+    assert [len(drawn.axes) for drawn in (flow.openings(run), flow.channel(run), flow.ice(run))] == [2, 2, 2]

@@ -16,6 +16,7 @@ import numpy as np
 from parsim.boundary.wall_samples import lattice_axis
 from parsim.case.course import at_time
 from parsim.case.fill import water_at
+from parsim.case.places import clearance
 from parsim.particles.lattice import lattice_of
 from parsim.particles.state import FLUID, INLET, Particles, make_id
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from parsim.case.model import Case
+    from parsim.case.places import Place as Solid
     from parsim.domain.slab import Slab
 
 _LAG = 2.0  # sqrt(H / g), of the level that the inlet follows
@@ -32,7 +34,9 @@ _SLACK = 0.25  # spacings by which the level must pass the middle of a row to wa
 class Inlet:
     """The inlet of a case at x_min. level, m: of the water that comes in; discharge, m3/s (2D: m2/s), as asked now.
 
-    speed (places,), m/s; travel (places,), m; first (places,), particles that each has given to the water so far.
+    speed (places,), m/s; travel (places,), m; first (places,), particles that each has given to the water so far;
+    covered (places,): ice comes in there, and no water; displaced, m3: water that did not come in for it so far;
+    surface_speed, m/s: of the uppermost water that comes in.
     """
 
     def __init__(self, case: Case, layers: int) -> None:
@@ -50,6 +54,7 @@ class Inlet:
         count = self._y.size
         self.travel, self.speed = np.zeros(count), np.zeros(count)
         self.first, self.awake = np.zeros(count, np.int64), np.zeros(count, bool)
+        self.covered, self.displaced, self._solids, self._lost = np.zeros(count, bool), 0.0, [], 0.0
         self._at, self._of, self._behind = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
         self._wake()
         self.follow(math.nan, case.start, 0.0)
@@ -61,9 +66,41 @@ class Inlet:
         elif np.isfinite(level):
             self.level += min(dt / self._lag, 1.0) * (level - self.level)
         self.discharge = at_time(self._side.discharge, time) if time >= 0.0 else 0.0
+        self._flow()
+
+    def _flow(self):
+        """Set the speeds, by the discharge. Floes weigh what they displace: where one comes in, water is left out."""
         share = self._shares()
         total = math.fsum(share) * self._area
-        self.speed = share * (self.discharge / total) if total > 0.0 else share
+        speed = share * (self.discharge / total) if total > 0.0 else share
+        self.surface_speed = float(speed[np.argmax(np.where(self.awake, self._z, -math.inf))])
+        self.speed = np.where(self.covered, 0.0, speed)
+        self._lost = (math.fsum(speed) - math.fsum(self.speed)) * self._area
+
+    def cover(self, solids: list[Solid]) -> None:
+        """Let no water come in where one of the solids does."""
+        self._solids, before, every = solids, self._gives, np.arange(self._z.size)
+        nearest = self._clear(self._place(every, 0, 0.0), every)
+        edge = self._clear(np.full(every.size, self.x - 0.5 * self._case.spacing), every)
+        self.covered = ~np.where(self.covered, edge, nearest)
+        self._begin(self._gives & ~before)
+        self._flow()
+
+    @property
+    def _gives(self):
+        """Which places give water: (places,) bool."""
+        return self.awake & ~self.covered
+
+    def _clear(self, x, place):
+        """Whether water at x (n,), m, of some places is not where something comes in: (n,) bool.
+
+        On the average it is then half a spacing off, and as much is left out as the solids take.
+        """
+        points = np.stack([x, self._y[place], self._z[place]], axis=1)
+        free = np.ones(len(points), bool)
+        for solid in self._solids:
+            free &= clearance(solid, points) > 0.0
+        return free
 
     def _shares(self):
         above, depth = self._z - self._floor, self.level - self._floor
@@ -73,15 +110,18 @@ class Inlet:
     def _wake(self):
         """Wake the places that the level has reached, send to sleep those that it has left."""
         top, slack = self._z + 0.5 * self._case.spacing, _SLACK * self._case.spacing
-        before = self.awake
+        before, given = self.awake, self._gives
         self.awake = np.where(before, top < self.level + 0.5 * self._case.spacing + slack, top <= self.level + slack)
-        woken = self.awake & ~before
+        self._begin(self._gives & ~given)
+
+    def _begin(self, woken):
+        """Let places that give water from now on do so from half a spacing before the side."""
         self.travel[woken] = self.first[woken] * self._case.spacing
 
     def emit(self, at_rest: Callable[[np.ndarray], dict[str, np.ndarray]]) -> Particles:
         """What has passed the side since it was asked last, as water in balance: Particles, the same on all ranks."""
         l0 = self._case.spacing
-        last = np.where(self.awake, np.floor(self.travel / l0 + 0.5).astype(np.int64), self.first)
+        last = np.where(self._gives, np.floor(self.travel / l0 + 0.5).astype(np.int64), self.first)
         count = np.maximum(last - self.first, 0)
         place = np.repeat(np.arange(count.size), count)
         number = self.first[place] + np.arange(place.size) - np.repeat(np.cumsum(count) - count, count)
@@ -104,11 +144,11 @@ class Inlet:
 
     def samples(self, slab: Slab, time: float) -> Particles:
         """The samples of the slab, `layers` deep, nearest first: Particles with layer and place as `sample`."""
-        place = np.flatnonzero(self.awake)
+        place = np.flatnonzero(self._gives)
         layer, place = (each.ravel() for each in np.meshgrid(np.arange(self._layers), place, indexing="ij"))
         number = layer * self._z.size + place
         x = self._place(place, layer, 0.0)
-        at = np.flatnonzero(slab.cells(x, self._y[place], self._z[place]) >= 0)
+        at = np.flatnonzero((slab.cells(x, self._y[place], self._z[place]) >= 0) & self._clear(x, place))
         return Particles(
             at.size,
             id=make_id(INLET, number[at]),
@@ -138,6 +178,7 @@ class Inlet:
     def advance(self, dt: float) -> None:
         """Let all places travel over dt, s."""
         self.travel += dt * self.speed
+        self.displaced += dt * self._lost
 
     @property
     def emitted(self) -> int:
@@ -151,11 +192,12 @@ class Inlet:
             "speed": self.speed.copy(),
             "first": self.first.copy(),
             "awake": self.awake.astype(np.int64),
-            "inlet": np.array([self.level, self.discharge]),
+            "covered": self.covered.astype(np.int64),
+            "inlet": np.array([self.level, self.discharge, self.displaced, self._lost]),
         }
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
         self.travel, self.speed, self.first = (np.array(kept[name]) for name in ("travel", "speed", "first"))
-        self.awake = np.array(kept["awake"], bool)
-        self.level, self.discharge = map(float, kept["inlet"])
+        self.awake, self.covered = np.array(kept["awake"], bool), np.array(kept["covered"], bool)
+        self.level, self.discharge, self.displaced, self._lost = map(float, kept["inlet"])

@@ -70,6 +70,11 @@ class Outlet:
         rise = 0.5 * self._side.absorb * (out - self._invariant) * math.sqrt(depth / self._gravity)
         self.level = max(self._asked(time) + rise, self._floor)
 
+    @property
+    def speed(self) -> float:
+        """Of the water right before the side, a mean over a short time, m/s; 0 where it flows back."""
+        return max(self._edge, 0.0) if math.isfinite(self._edge) else 0.0
+
     def _pass_on(self, edge, share):
         """Let the zone go faster or slower with the water before it, a `share` of what is wanting in this step."""
         if not math.isfinite(edge):

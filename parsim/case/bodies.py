@@ -24,8 +24,8 @@ def particles_across(case, body):
 
 
 def placed(case):
-    """The bodies that have a place (a body that cannot float has none)."""
-    return [body for body in case.bodies if body.position[2] != "float"]
+    """The bodies that have a place: one that cannot float has none, one that is yet to come in neither."""
+    return [body for body in case.bodies if body.position[2] != "float" and not body.enters]
 
 
 def names(case):
@@ -82,7 +82,7 @@ def _body(case, body):
     yield from body.shape.faults(case.dimensions == 2)
     if case.dimensions == 2:
         yield from _planar(body)
-    if body.position[2] != "float":
+    if body.position[2] != "float" and not body.enters:
         yield from _outside(case, body)
 
 
@@ -160,7 +160,7 @@ def overlaps(case):
 
 def joints(case):
     """Every joint ties a body that there is, and what is tied to two of them can follow both."""
-    known, taken, faults = {body.name: body for body in case.bodies}, {}, []
+    known, taken, faults = {body.name: body for body in case.bodies if not body.enters}, {}, []
     for i, joint in enumerate(case.joints):
         key = f"joints.{i}"
         if joint.body not in known:

@@ -132,7 +132,7 @@ def _water(case):
     """Lattice points of all fills less the volume of the bodies and the gate in them."""
     fills = case.water.fill
     points = sum(_count(case, np.subtract(fill.max, fill.min)) - _count(case, _in_gate(case, fill)) for fill in fills)
-    return points - sum(_immersed(case, body) for body in case.bodies)
+    return points - sum(_immersed(case, body) for body in case.bodies if not body.enters)
 
 
 def _in_gate(case, fill):

@@ -38,7 +38,10 @@ def locate(data, folder):
         if isinstance(side, dict):
             read_courses(side, folder, f"box.faces.{name}")
     named = [body.get("shape") for body in _tables(data.get("bodies"))]
-    named += [law for field in _tables(ice.get("fields") if isinstance(ice, dict) else None) for law in field.values()]
+    for key in ("fields", "supplies"):
+        for given in _tables(ice.get(key) if isinstance(ice, dict) else None):
+            read_courses(given, folder, f"ice.{key}")
+            named += given.values()
     for table in (*named, data.get("bed")):
         if isinstance(table, dict) and isinstance(table.get("file"), str):
             table["file"] = str((folder / table["file"]).resolve())

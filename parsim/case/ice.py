@@ -1,12 +1,16 @@
-"""Ice in a case: the table of a field of floes at the start, and the bodies that it becomes. Lengths in m."""
+"""Ice in a case: fields of floes at the start and supplies of floes that come in, and the bodies that they become.
+
+Lengths in m.
+"""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from parsim.case import ice_faults, places
+from parsim.case import ice_faults, places, supply
 from parsim.case.bodies import gate_box, placed
+from parsim.case.course import Course
 from parsim.case.ice_faults import floes_of, rectangle, shape_of, water_under
 from parsim.case.plans import plan_of
 from parsim.case.types import Count, Name, NotNegative, Number, Positive, Real, Table, Vector, Whole
@@ -22,15 +26,14 @@ from parsim.ice.row import row
 GAP = 0.5  # spacings, between floes and to all else, where no gap is given
 SQUARE = Listed(kind="list", values=(1.0,))
 Ends = Annotated[tuple[Number, ...], Field(max_length=2)]
+Concentration = Annotated[Real, Field(gt=0, le=0.9)]
 
 
-class IceField(Table):
-    """Floes afloat at rest or at one velocity in a rectangle, drawn from laws."""
+class Floes(Table):
+    """Floes drawn from laws: what fields and supplies have in common. KEY: where such tables are in a case."""
 
+    KEY: ClassVar[str]
     name: Name = Field(description="name; its floes are bodies NAME_1, NAME_2 and so on")
-    min: Ends = Field(description="lowest corner of the rectangle in plan (x, y), m; in 2D (x)")
-    max: Ends = Field(description="highest corner (x, y), m; in 2D (x)")
-    concentration: Annotated[Real, Field(gt=0, le=0.9)] = Field(description="area of the floes over the rectangle's")
     shape: Literal["box", "disc", "polygon"] = Field("box", description="what the floes are; in 2D box")
     size: Law = Field(
         description="size, m, a number or a law: longer edge of a box, diameter of a disc, that of the circle of a "
@@ -43,22 +46,59 @@ class IceField(Table):
     )
     density: Positive = Field(description="density, kg/m3")
     material: Name = Field(description="name of their material")
-    velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity at the start, m/s")
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(0, description="another number gives other floes")
     floes: Count | None = Field(
         None, description="how many of the bodies are its floes; written with them, left out: none yet"
     )
+
+    def laws(self, dimensions):
+        """What its floes are drawn from."""
+        return Laws(self.shape, self.size, self.thickness, self.aspect or SQUARE, dimensions)
+
+    @property
+    def stream(self):
+        """The number of the stream of its draws."""
+        return stream_of(f"{self.KEY}.{self.name}")
+
+    def apart(self, case):
+        """Their least distance in plan, m."""
+        return GAP * case.spacing if self.gap is None else self.gap
+
+
+class IceField(Floes):
+    """Floes afloat at rest or at one velocity in a rectangle, drawn from laws."""
+
+    KEY = "ice.fields"
+    min: Ends = Field(description="lowest corner of the rectangle in plan (x, y), m; in 2D (x)")
+    max: Ends = Field(description="highest corner (x, y), m; in 2D (x)")
+    concentration: Concentration = Field(description="area of the floes over the rectangle's")
+    velocity: Vector = Field((0.0, 0.0, 0.0), description="velocity at the start, m/s")
+
+
+class IceSupply(Floes):
+    """Floes that come in through the inlet with the water, drawn from laws. One of concentration and discharge."""
+
+    KEY = "ice.supplies"
+    concentration: Concentration | None = Field(
+        None, description="area of the floes over that of the surface that comes in with them"
+    )
+    discharge: Course | None = Field(
+        None, description="volume of ice that comes in, m3/s (2D: m2/s): a number, rows [time, value] or a file"
+    )
+    begins: NotNegative = Field(0.0, description="time from which on it comes, s")
+    ends: Positive | None = Field(None, description="time at which it ends, s; left out: the end of the run")
 
 
 class Ice(Table):
     """Ice."""
 
     fields: tuple[IceField, ...] = Field((), description="fields of floes at the start")
+    supplies: tuple[IceSupply, ...] = Field((), description="floes that come in through the inlet")
 
 
 def with_floes(case):
     """(`case`, whose bodies have their places, with the floes of its fields among them, yet to float; messages)."""
-    if not case.ice.fields:
+    if not (case.ice.fields or case.ice.supplies or any(body.enters for body in case.bodies)):
         return case, []
     faults, fields, made, taken = ice_faults.names(case), [], [], None
     for given in case.ice.fields:
@@ -72,11 +112,37 @@ def with_floes(case):
                 made.append(found)
         except InputError as error:
             field, wrong = given, error.messages
-        faults += [f"ice.fields.{given.name}.{text}" for text in wrong]
+        faults += [f"{given.KEY}.{given.name}.{text}" for text in wrong]
         fields.append(field)
     new = [body for _, bodies in made for body in bodies]
-    ice = case.ice.model_copy(update={"fields": tuple(fields)})
-    return case.model_copy(update={"bodies": (*case.bodies, *new), "ice": ice}), faults
+    supplies, waiting, wrong = _supplied(case)
+    ice = case.ice.model_copy(update={"fields": tuple(fields), "supplies": tuple(supplies)})
+    return case.model_copy(update={"bodies": (*case.bodies, *new, *waiting), "ice": ice}), faults + wrong
+
+
+def _supplied(case):
+    """(The supplies of a case, completed; the bodies that wait to come in, yet to float at the inlet; messages)."""
+    supplies, bodies = [], []
+    known = {body.name for given in case.ice.supplies for body in floes_of(case, given)}
+    faults = [
+        f"bodies.{body.name}.enters = true: is written with the floes of ice.supplies; leave it out"
+        for body in case.bodies
+        if body.enters and body.name not in known
+    ]
+    x, y = case.box.min[0] + 0.5 * (case.spacing or 0.0), 0.5 * (case.box.min[1] + case.box.max[1])
+    for given in case.ice.supplies:
+        try:
+            supplied, wrong = supply.read(case, given)
+            if not wrong and supplied.floes is None:
+                found = [Placed(floe, Pose(x, y, 0.0)) for floe in supply.floes(case, supplied)]
+                new = [_body(case, supplied, number, one) for number, one in enumerate(found, 1)]
+                bodies += [body.model_copy(update={"enters": True}) for body in new]
+                supplied = supplied.model_copy(update={"floes": len(found)})
+        except InputError as error:
+            supplied, wrong = given, error.messages
+        faults += [f"{given.KEY}.{given.name}.{text}" for text in wrong]
+        supplies.append(supplied)
+    return supplies, bodies, faults
 
 
 def told(case):
@@ -89,17 +155,21 @@ def told(case):
             f"ice        {field.name}: {field.floes} floes on {reached:.4g} {unit}, {field.concentration * whole:.4g} "
             f"{unit} asked for; concentration {reached / whole:.4g}"
         )
+    for given in case.ice.supplies:
+        volume = sum(body.shape.volume for body in floes_of(case, given))
+        unit = "m2" if case.dimensions == 2 else "m3"
+        lines.append(f"ice        {given.name}: up to {given.floes} floes of {volume:.4g} {unit} will come in")
     return lines
 
 
 def doubts(case):
     """What is allowed but doubtful in the fields of a checked case: messages."""
-    for field in case.ice.fields if case.water.scheme.WET else ():
+    for field in (*case.ice.fields, *case.ice.supplies) if case.water.scheme.WET else ():
         widths = [2.0 * body.shape.thinnest(case.dimensions == 2) for body in floes_of(case, field)]
         few = [width for width in widths if round(width / case.spacing) < 4]
         if few:
             yield (
-                f"ice.fields.{field.name}: {len(few)} of {len(widths)} floes have fewer than four particles across "
+                f"{field.KEY}.{field.name}: {len(few)} of {len(widths)} floes have fewer than four particles across "
                 f"their thinnest side, {min(few):.6g} m at least; four or more give usable loads"
             )
 
@@ -107,10 +177,9 @@ def doubts(case):
 def _spread(case, field, taken, made):
     """(what the floes take of the plan, their bodies), and the field that says how many. Raises InputError."""
     bottom, level = water_under(case, field)
-    gap = GAP * case.spacing if field.gap is None else field.gap
-    laws = Laws(field.shape, field.size, field.thickness, field.aspect or SQUARE, case.dimensions)
+    gap, laws = field.apart(case), field.laws(case.dimensions)
     asked, region = field.concentration * rectangle(field), _region(case, field, gap)
-    floes = covering(asked, field.seed, stream_of(f"ice.fields.{field.name}"), laws)
+    floes = covering(asked, field.seed, field.stream, laws)
     if floes is None:
         raise InputError(f"size: more than {MOST} floes cover {asked:.6g} m2; make them larger or the field smaller")
     ice_faults.check_sizes(case, field, floes, region)
@@ -181,7 +250,7 @@ def _body(case, field, number, one):
         density=field.density,
         position=(one.pose.x, one.pose.y, "float"),
         angles=(0.0, 0.0, round(math.degrees(one.pose.turn), 6)),
-        velocity=field.velocity,
+        velocity=getattr(field, "velocity", (0.0, 0.0, 0.0)),
         material=field.material,
     )
 

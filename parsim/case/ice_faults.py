@@ -1,4 +1,4 @@
-"""Checks of the fields of ice of a case, before and after their floes are drawn. Lengths in m."""
+"""Checks of fields and supplies of ice of a case, before and after their floes are drawn. Lengths in m."""
 
 import itertools
 import math
@@ -22,15 +22,16 @@ def floes_of(case, field):
 
 def names(case):
     """Names of fields differ, and leave room for a number."""
-    names = [field.name for field in case.ice.fields]
+    every = *case.ice.fields, *case.ice.supplies
+    names = [given.name for given in every]
     faults = [
-        f'ice.fields: name = "{name}" is given more than once; names must differ'
+        f'ice: name = "{name}" is given more than once; names must differ'
         for name in sorted({name for name in names if names.count(name) > 1})
     ]
     return faults + [
-        f"ice.fields.{name}.name: {len(name)} letters; at most {_LONGEST}, its floes have a number besides"
-        for name in names
-        if len(name) > _LONGEST
+        f"{given.KEY}.{given.name}.name: {len(given.name)} letters; at most {_LONGEST}, its floes have a number besides"
+        for given in every
+        if len(given.name) > _LONGEST
     ]
 
 
@@ -64,11 +65,7 @@ def wrong(case, field):
         yield f"min = {list(field.min)}, max = {list(field.max)}: must have {what} each"
         return
     if field.floes is not None:
-        if (there := len(floes_of(case, field))) != field.floes:
-            yield (
-                f"floes = {field.floes}: there are {there} bodies {field.name}_1 to {field.name}_{field.floes}; leave "
-                "floes out, it is written when bodies are made of the field"
-            )
+        yield from missing(case, field)
         return
     for axis, (low, high) in enumerate(zip(field.min, field.max, strict=True)):
         if not low < high:
@@ -80,10 +77,6 @@ def wrong(case, field):
                     f"{key} = {list(getattr(field, key))}: {'xy'[axis]} is outside the box, {box.min[axis]!r} to "
                     f"{box.max[axis]!r}"
                 )
-    if planar and field.shape != "box":
-        yield f'shape = "{field.shape}": must be "box" in a 2D case'
-    if field.aspect is not None and (planar or field.shape == "disc"):
-        yield f"aspect: {'floes of a 2D case' if planar else 'discs'} have none; leave it out"
     if planar and field.velocity[1]:
         yield f"velocity = {list(field.velocity)}: y must be 0 in a 2D case"
     if math.hypot(*field.velocity) >= case.sound_speed > 0.0:
@@ -91,15 +84,34 @@ def wrong(case, field):
             f"velocity = {list(field.velocity)}: must be slower than the sound of the model, {case.sound_speed:.6g} "
             "m/s, which is water.scheme.sound times water.speed"
         )
-    if field.material not in case.materials:
-        yield f'material = "{field.material}": {unknown_material(field.material, case.materials)}'
-    if field.density >= case.water.density:
-        yield (
-            f"density = {field.density!r}: does not float; must be below that of the water, "
-            f"{case.water.density!r} kg/m3"
-        )
+    yield from common(case, field)
     if case.spacing is None or isinstance(water := water_under(case, field), str):
         yield water if case.spacing is not None else "min, max: there is no spacing, and no water to float in"
+
+
+def missing(case, given):
+    """Whether the bodies that a completed field or supply says are its floes are there."""
+    if (there := len(floes_of(case, given))) != given.floes:
+        yield (
+            f"floes = {given.floes}: there are {there} bodies {given.name}_1 to {given.name}_{given.floes}; leave "
+            "floes out, it is written when bodies are made of it"
+        )
+
+
+def common(case, given):
+    """What is wrong with what fields and supplies have in common."""
+    planar = case.dimensions == 2
+    if planar and given.shape != "box":
+        yield f'shape = "{given.shape}": must be "box" in a 2D case'
+    if given.aspect is not None and (planar or given.shape == "disc"):
+        yield f"aspect: {'floes of a 2D case' if planar else 'discs'} have none; leave it out"
+    if given.material not in case.materials:
+        yield f'material = "{given.material}": {unknown_material(given.material, case.materials)}'
+    if given.density >= case.water.density:
+        yield (
+            f"density = {given.density!r}: does not float; must be below that of the water, "
+            f"{case.water.density!r} kg/m3"
+        )
 
 
 def water_under(case, field):
@@ -129,13 +141,7 @@ def check_sizes(case, field, floes, region):
             f"concentration = {field.concentration!r}: asks for {small:.6g} m2, less than half of the first floe, "
             f"{floes[0].area:.6g} m2; make the floes smaller or the rectangle larger"
         )
-    widths = [2.0 * shape_of(case, floe).thinnest(case.dimensions == 2) for floe in floes]
-    thin = [width for width in widths if round(width / case.spacing) < 2]
-    if thin and case.water.scheme.WET:
-        raise InputError(
-            f"size, thickness: {len(thin)} of {len(floes)} floes are thinner than two particles at spacing = "
-            f"{case.spacing!r}, the thinnest {min(thin):.6g} m; must be at least 1.5 spacings"
-        )
+    check_thickness(case, floes)
     if any(low >= high for low, high in zip(*region, strict=True)):
         raise InputError("min, max: nothing of the rectangle is left between the sides of the box and their gaps")
     large = [floe for floe in floes if not (case.dimensions == 2 or fits(floe, region))]
@@ -146,6 +152,17 @@ def check_sizes(case, field, floes, region):
         raise InputError(
             f"size: {len(large)} of {len(floes)} floes do not fit into the rectangle, the largest of {most:.6g} m into "
             f"{room} m; limit the sizes or enlarge it"
+        )
+
+
+def check_thickness(case, floes):
+    """Refuse floes that are too thin for particles."""
+    widths = [2.0 * shape_of(case, floe).thinnest(case.dimensions == 2) for floe in floes]
+    thin = [width for width in widths if round(width / case.spacing) < 2]
+    if thin and case.water.scheme.WET:
+        raise InputError(
+            f"size, thickness: {len(thin)} of {len(floes)} floes are thinner than two particles at spacing = "
+            f"{case.spacing!r}, the thinnest {min(thin):.6g} m; must be at least 1.5 spacings"
         )
 
 

@@ -105,6 +105,7 @@ class Body(Table):
     fixed: Switch = Field(False, description="never moves")
     released: Number | None = Field(None, description="held in place before this time, s; left out: never held")
     repeat: Repeat | None = Field(None, description="many of them on a lattice; left out: one")
+    enters: Switch = Field(False, description="a floe of a supply, which waits to come in; written with ice.supplies")
 
 
 class Gate(Table):

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from parsim.case.course import at_time, largest, wrong_course
+from parsim.case.course import at_time, largest, least, wrong_course
 from parsim.case.fill import water_at
 from parsim.geometry.faces import SIDES
 
@@ -35,11 +35,11 @@ def _inlet(case):
         course = getattr(side, key)
         if course is not None:
             yield from wrong_course(key, course)
-            if _lowest(course) < 0.0 and key == "discharge":
-                yield f"discharge = {_lowest(course):g}: must be 0 or more; it flows in"
+            if least(course) < 0.0 and key == "discharge":
+                yield f"discharge = {least(course):g}: must be 0 or more; it flows in"
     level = standing[1] if side.level is None else at_time(side.level, 0.0)
-    if side.level is not None and _lowest(side.level) <= case.box.min[2] + case.spacing:
-        yield f"level = {_lowest(side.level):g}: must be more than a spacing above the floor, {case.box.min[2]!r} m"
+    if side.level is not None and least(side.level) <= case.box.min[2] + case.spacing:
+        yield f"level = {least(side.level):g}: must be more than a spacing above the floor, {case.box.min[2]!r} m"
         return
     depth = level - case.box.min[2]
     width = 1.0 if case.dimensions == 2 else case.box.size[1]
@@ -63,7 +63,7 @@ def _outlet(case):
     floor, top = case.box.min[2], case.box.max[2]
     if side.level is not None:
         yield from wrong_course("level", side.level)
-        low, high = _lowest(side.level), largest(side.level)
+        low, high = least(side.level), largest(side.level)
         if low <= floor:
             yield f"level = {low:g}: must be above the floor, {floor!r} m"
         if high > top:
@@ -77,7 +77,3 @@ def _outlet(case):
                 yield f"rating: {name} {high:g} after {low:g}: must grow from row to row"
         if rows[:, 1].min() <= floor:
             yield f"rating: level {rows[:, 1].min():g} m: must be above the floor, {floor!r} m"
-
-
-def _lowest(course):
-    return course if isinstance(course, float) else min(value for _, value in course)

@@ -9,12 +9,14 @@ import numpy as np
 from parsim.boundary.inlet import Inlet
 from parsim.boundary.outlet import Outlet
 from parsim.case.scales import scales
+from parsim.coupling.passage import Passage
 from parsim.particles.state import DETACHED
 
 if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.fluid.scheme import Flow
     from parsim.particles.state import Particles
+    from parsim.solid.bodies import Bodies
 
 _INLET = 0.5, 1.5  # depths from the inlet, between which its level is looked for
 _OUTLET = 0.0, 0.5  # the same of the outlet; from further off a wave would be answered before it is there
@@ -25,13 +27,15 @@ _INSIDE, _OUTSIDE, _BEFORE, _BACK = range(4)  # rows of the sums: inlet, outlet,
 class Openings:
     """Inlet at x_min and outlet at x_max of a case, each None where the side is another; exact account of particles.
 
+    passage: of bodies through them;
     clipped: share of the water beyond the outlet that was kept from going back, its mean so far.
     """
 
-    def __init__(self, case: Case, layers: int) -> None:
+    def __init__(self, case: Case, layers: int, bodies: Bodies) -> None:
         faces, scale = case.box.faces, scales(case)
         self.inlet = Inlet(case, layers) if faces.x_min.kind == "inlet" else None
         self.outlet = Outlet(case, layers) if faces.x_max.kind == "outlet" else None
+        self.passage = Passage(case, bodies, self.inlet, self.outlet)
         self._depth, self._floor, self._spacing = case.depth, case.box.min[2], case.spacing
         self._head = case.water.density * -case.gravity[2]
         self._units = np.array([scale.length, scale.length / scale.time, 1.0])
@@ -73,6 +77,7 @@ class Openings:
         if self.outlet:
             seen = float(level[_OUTSIDE]) - self._floor, float(speed[_OUTSIDE]), float(speed[_BEFORE])
             self.outlet.follow(*seen, time, dt)
+        self.passage.advance(time, dt)
 
     def find(self, p: Particles, own: slice) -> None:
         """Note where samples and zone are among the particles `p` after a rebuild; `own` are those of this rank."""
@@ -99,7 +104,7 @@ class Openings:
 
     def kept(self) -> dict[str, np.ndarray]:
         """What a restart needs."""
-        kept = {"back": self._back.copy()}
+        kept = {"back": self._back.copy()} | self.passage.kept()
         for each in (self.inlet, self.outlet):
             kept |= each.kept() if each else {}
         return kept
@@ -107,6 +112,7 @@ class Openings:
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
         self._back = np.array(kept["back"], float)
+        self.passage.restore(kept)
         for each in (self.inlet, self.outlet):
             if each:
                 each.restore(kept)

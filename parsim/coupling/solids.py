@@ -5,6 +5,7 @@ import numpy as np
 from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall_samples import Walls
 from parsim.case.scales import power_of_two, scales
+from parsim.coupling.depths import Columns
 from parsim.coupling.films import Films
 from parsim.coupling.friction import Friction, Rubbing
 from parsim.coupling.openings import Openings
@@ -34,7 +35,8 @@ class Solids:
         self.friction = None
         if case.water.friction is not None:
             self.friction = Friction(case, self.bodies, self.samples, self.gate)
-        self.openings = Openings(case, layers)
+        self._columns = Columns(case, self.bodies) if case.water.eddies is not None else None
+        self.openings = Openings(case, layers, self.bodies)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._wet = case.water.scheme.WET
         self._load = np.zeros((len(self.bodies), 6))  # of the water in this step
@@ -49,6 +51,11 @@ class Solids:
             for source in (self.samples, self._gate_samples, self.openings.inlet, self.walls)
             if source is not None
         ]
+
+    @property
+    def depths(self):
+        """`Depths` of the water where eddies ask for them, else None."""
+        return self._columns.depths if self._columns else None
 
     @property
     def parts(self):
@@ -66,6 +73,8 @@ class Solids:
             self.films.find(flow.domain)
         if self.friction:
             self.friction.find(flow.particles, flow.near)
+        if self._columns:
+            self._columns.find(flow)
 
     def place(self, flow, time, ahead):
         """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""

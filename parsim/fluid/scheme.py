@@ -19,7 +19,12 @@ class Flow(NamedTuple):
 
 
 class Solids(Protocol):
-    """What a step may ask of walls, gate and bodies (`parsim.coupling.solids`)."""
+    """What a step may ask of walls, gate and bodies (`parsim.coupling.solids`).
+
+    depths: `turbulence.Depths` of the water, None where there are no eddies.
+    """
+
+    depths: object
 
     def place(self, flow, time, ahead):
         """Bring the samples of all that is solid to where it is at time + ahead, s."""

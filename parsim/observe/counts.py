@@ -54,7 +54,9 @@ class Counts:
         fluid, *rest = s.domain.count(at.size, *count, s.domain.lost, count_surface(at, p.surface))
         every = fluid + len(s.solids.walls) + len(s.solids.samples)
         (full,) = s.domain.sum((1.0 / s.scheme.compression(p, at))[:, None], 1.0)  # of m / rho, not of N
-        return [[fluid, s.active, every, *rest, float(full) * s.scheme.lattice.volume, int(s.bodies.gone.sum())]]
+        return [
+            [fluid, s.active, every, *rest, float(full) * s.scheme.lattice.volume, int((s.bodies.left < np.inf).sum())]
+        ]
 
 
 @kernel

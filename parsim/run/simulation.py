@@ -158,6 +158,8 @@ class Simulation:
         if openings.inlet:
             born = openings.inlet.emit(self.scheme.at_rest)
             fluid = Particles.join([fluid, born]) if self.comm.rank == 0 else fluid
+        if openings:
+            openings.passage.turn(self.time)
         return fluid
 
     def _take_out(self):

@@ -22,9 +22,13 @@ _KEPT = (
     "spring_load",
     "joint_load",
     "film",
+    "entered",
     "left",
+    "lead",
 )
-_FAR = 1e6  # m that what has been taken out is moved on, out of reach of everything
+_FAR = 1e6  # m off where bodies are that have left or are yet to come, out of reach of everything
+_APART = 2.1  # radii that each has there, lest they be looked at as neighbours
+_CALM = 0.1  # s in which what is led comes to go straight along
 
 
 class Bodies:
@@ -37,8 +41,9 @@ class Bodies:
     joints: what ties them to the world (`solid.ties`). Of the last step: acceleration, angular_acceleration (nb, 3);
     water_load, contact_load, gravity_load, spring_load (to the world) and joint_load (all joints, those springs too)
     (nb, 6): mean force, N, and torque about the centre, N m. film (nb, 7): head of the water around, Pa, at the origin,
-    and how well each face is fed with it, 0 to 1 (`coupling.films`). left (nb,): time, s, at which it was taken out,
-    inf before.
+    and how well each face is fed with it, 0 to 1 (`coupling.films`). entered (nb,): time, s, at which it came in, inf
+    before, -inf of what was there from the start; left (nb,): at which it was taken out, inf before. lead (nb,), m/s:
+    what is led goes along x with this, whatever pushes it; nan of what is not.
     """
 
     def __init__(
@@ -54,6 +59,7 @@ class Bodies:
         material=0,
         fixed=False,
         released=-math.inf,
+        waits=False,
         planar=False,
         joints=(),
     ):
@@ -72,11 +78,16 @@ class Bodies:
         self.velocity[still], self.spin[still] = 0.0, 0.0
         self.quaternion = _rows((1.0, 0.0, 0.0, 0.0) if quaternion is None else quaternion, count, 4)
         self.acceleration, self.angular_acceleration = np.zeros((count, 3)), np.zeros((count, 3))
-        self.film, self.left = np.zeros((count, 7)), np.full(count, math.inf)
+        self.film, self.lead = np.zeros((count, 7)), np.full(count, math.nan)
+        self.entered = np.where(_column(waits, count, bool), math.inf, -math.inf)
+        self.left = np.full(count, math.inf)
         self.water_load, self.contact_load, self.gravity_load = (np.zeros((count, 6)) for _ in range(3))
         self.spring_load, self.joint_load = (np.zeros((count, 6)) for _ in range(2))
         frames = matrices(np.array([s.turn for s in self.shapes], float).reshape(-1, 4))
         self.joints = joints_of(joints, self.names, self.position, self.quaternion, frames)
+        self._berth = _APART * np.cumsum(self.radius)
+        for b in np.flatnonzero(self.gone):
+            self._send_off(b, 0, -1.0)
 
     def __len__(self):
         return len(self.mass)
@@ -117,28 +128,45 @@ class Bodies:
         return springs[~self.gone[springs[:, 0].astype(int)]] if len(springs) else springs
 
     def drives(self, time, dt):
-        """What `Joints.drives` gives of the bodies that are there."""
-        return [drive for drive in self.joints.drives(time, dt) if not self.gone[drive[0]]]
+        """(number, velocity, spin) of what is there and driven by joints, see `Joints.drives`, or led."""
+        driven = [drive for drive in self.joints.drives(time, dt) if not self.gone[drive[0]]]
+        keep = max(1.0 - dt / _CALM, 0.0)
+        for b in np.flatnonzero(np.isfinite(self.lead)):
+            driven.append((b, np.array([self.lead[b], *(keep * self.velocity[b, 1:])]), keep * self.spin[b]))
+        return driven
 
     @property
     def gone(self):
-        """Which bodies have been taken out: (nb,) bool."""
-        return self.left < math.inf
+        """Which bodies are not there: have been taken out, or are yet to come in: (nb,) bool."""
+        return (self.left < math.inf) | (self.entered == math.inf)
+
+    def reaches(self):
+        """How far all reach from their centres along the axes (nb, 3), m."""
+        return reaches(self.forms, matrices(self.quaternion))
+
+    def bring_in(self, b, position, quaternion, time):
+        """Let body `b` come in at a pose, at rest."""
+        self.position[b], self.quaternion[b], self.entered[b] = position, quaternion, time
+
+    def _send_off(self, b, axis, sign):
+        self.position[b, axis] = sign * (_FAR + self._berth[b])
 
     def take_out(self, low, high, time):
         """Take out the bodies that lie wholly outside `low` to `high` (3,), m: numbers, place and velocity (n, 6).
 
-        They stay, at rest, far out on the side where they left.
+        They stay, at rest, far out on the side where they left. What is led in is not taken out before it is there.
         """
         if not len(self):
             return np.zeros(0, int), np.zeros((0, 6))
-        reach = reaches(self.forms, matrices(self.quaternion))
+        reach = self.reaches()
         below, above = self.position + reach < low, self.position - reach > high
+        below[:, 0] &= np.isnan(self.lead)
         at = np.flatnonzero((below | above).any(1) & ~self.gone)
         rows = np.hstack([self.position[at], self.velocity[at]])
         for b in at:
             axis = int(np.argmax(below[b] | above[b]))
-            self.position[b, axis] += math.copysign(_FAR, -1.0 if below[b, axis] else 1.0)
+            self._send_off(b, axis, -1.0 if below[b, axis] else 1.0)
+            self.lead[b] = math.nan
             for of in (
                 self.velocity,
                 self.spin,
@@ -235,6 +263,7 @@ def from_case(case):
         material=[numbers[b.material] for b in bodies],
         fixed=[b.fixed for b in bodies],
         released=[-math.inf if b.released is None else b.released for b in bodies],
+        waits=[b.enters for b in bodies],
         planar=case.dimensions == 2,
         joints=case.joints,
     )

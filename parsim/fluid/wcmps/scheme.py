@@ -104,7 +104,7 @@ class WCMPS:
             if solids.driven(time + 0.5 * dt):
                 solids.drive(flow, self._react(p, near, near.gate, dt, rubbing), time + 0.5 * dt, dt)
         self._accelerate(domain, near, dt)
-        self._shear(domain, near, rubbing, dt)
+        self._shear(domain, near, rubbing, solids.depths, dt)
         with self.timers("move"):
             updates.kick(near.fluid, flow.gravity, flow.keep, dt, p.acceleration, p.velocity)
             solids.release(flow)
@@ -140,16 +140,17 @@ class WCMPS:
             bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
             surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
 
-    def _shear(self, domain, near, rubbing, dt):
+    def _shear(self, domain, near, rubbing, depths, dt):
         """Add the stress of walls, of eddies and of resolved viscous layers to the acceleration of the fluid.
 
         Eddies take no more in a step than half of what changes from particle to particle.
         """
         p, smooth, given = domain.particles, self._smooth, (near.fluid, near.lists, domain.particles.kinematics)
         if self.eddies:
-            eddies = self.eddies._replace(most=0.25 / (dt * self._mixing * smooth.slopes))
+            length = self.eddies._replace(most=0.25 / (dt * self._mixing * smooth.slopes))
             with self.timers("eddies"):
-                turbulence.eddy_viscosity(*given, smooth.weight, eddies, smooth.number, smooth.dimensions, p.eddy)
+                lattice = smooth.number, smooth.dimensions
+                turbulence.eddy_viscosity(*given, smooth.weight, length, depths, lattice, p.eddy)
         if self._resolved:
             domain.refresh("eddy", "surface")
             with self.timers("eddies"):

@@ -1,0 +1,183 @@
+"""Bodies that pass inlet and outlet: led with the water there, so that they neither fall in nor tip over the end.
+
+A floe of a supply comes in from beyond the inlet at its draught, as fast as the surface of the water that comes in,
+which is left out where the floe is; once it is inside it is let go. It waits while another one is in its way, or where
+it is to come in: how long is a result. What floats over the outlet is led on with the water there until it is outside.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from parsim.case import supply
+from parsim.case.ice_faults import floes_of
+from parsim.case.places import Place
+from parsim.case.plans import plan_of
+from parsim.geometry.faces import period
+from parsim.geometry.rotation import from_angles, matrices, turned
+from parsim.ice.draw import evenly
+from parsim.ice.outlines import gaps, joined, outlines
+
+if TYPE_CHECKING:
+    from parsim.boundary.inlet import Inlet
+    from parsim.boundary.outlet import Outlet
+    from parsim.case.ice import IceSupply
+    from parsim.case.model import Case
+    from parsim.solid.bodies import Bodies
+
+_TRIES = 50  # poses that are looked at for a floe
+_POSES = 3  # part of a floe's counter of draws
+_INSIDE = 1.0  # spacings inside the inlet at which a floe is let go
+_BRAKE = 2.0  # spacings in which one that is led comes to a stop: the water is not to feel a blow
+_NEAR = 0.25  # spacings from what is in its way at which it stands
+
+
+class _Queue:
+    """The floes of one supply. wanted, given: area or volume so far; blocked, s: in which one found no way in."""
+
+    def __init__(self, case: Case, given: IceSupply) -> None:
+        number = {body.name: row for row, body in enumerate(case.bodies)}
+        bodies = floes_of(case, given)
+        self.supply, self.rows = given, [number[body.name] for body in bodies]
+        self.angles = [body.angles for body in bodies]
+        self.height = [float(body.position[2]) for body in bodies]
+        volumes = [body.shape.volume for body in bodies]
+        thick = [2.0 * body.shape.half[2] for body in bodies]
+        self.amounts = [supply.amount(given, v / t, t) for v, t in zip(volumes, thick, strict=True)]
+        self.next, self.wanted, self.given, self.blocked, self.waits = 0, 0.0, 0.0, 0.0, False
+
+    @property
+    def due(self) -> bool:
+        """Whether it lags by the next floe."""
+        return self.next < len(self.rows) and self.wanted - self.given >= self.amounts[self.next]
+
+    @property
+    def lag(self) -> int:
+        """How many floes ought to have come in and have not."""
+        owed, ahead = self.wanted - self.given, np.cumsum(self.amounts[self.next :])
+        return int(np.searchsorted(ahead, owed, side="right"))
+
+
+class Passage:
+    """The bodies that pass inlet and outlet of a case, either None where there is none. Alike on all ranks."""
+
+    def __init__(self, case: Case, bodies: Bodies, inlet: Inlet | None, outlet: Outlet | None) -> None:
+        self._case, self._bodies, self._inlet, self._outlet = case, bodies, inlet, outlet
+        self.queues = [_Queue(case, given) for given in case.ice.supplies]
+        self._period = np.array(period(case))
+        self._length = np.where(np.isfinite(self._period), self._period, 0.0)
+        self._width, self._level = supply.width_of(case), inlet.level if inlet else 0.0
+        driven = {joint.body for joint in case.joints}
+        self._free = np.array([not body.fixed and body.name not in driven for body in case.bodies], bool)
+        self._goal = np.zeros(len(bodies))  # of the speed of what is led, m/s
+
+    def advance(self, time: float, dt: float) -> None:
+        """Count what supplies are to give in a step of dt at a time, s, and go on with the water there."""
+        if time < 0.0:
+            return
+        for queue in self.queues:
+            queue.wanted += dt * supply.rate(queue.supply, time, self._width, self._inlet.surface_speed)
+            queue.blocked += dt if queue.waits else 0.0
+        b = self._bodies
+        led = np.flatnonzero(np.isfinite(b.lead))
+        if len(led):
+            fast = max(self._inlet.surface_speed if self._inlet else 0.0, self._outlet.speed if self._outlet else 0.0)
+            most = dt * fast * fast / (2.0 * _BRAKE * self._case.spacing)
+            b.lead[led] += np.clip(self._goal[led] - b.lead[led], -most, most)
+
+    def turn(self, time: float) -> None:
+        """Let bodies come in, wait, go on and be let go, before lists are built anew at a time, s."""
+        b = self._bodies
+        if not len(b):
+            return
+        led, beyond = np.isfinite(b.lead), b.position[:, 0] > (self._outlet.x if self._outlet else math.inf)
+        if self._outlet:
+            leaving = beyond & self._free & ~b.gone
+            b.lead[leaving & ~led] = b.velocity[leaving & ~led, 0]
+            self._goal[leaving] = self._outlet.speed
+        if not self.queues:
+            return
+        coming = np.flatnonzero(led & ~beyond)
+        through = b.position[coming, 0] - b.reaches()[coming, 0] >= self._inlet.x + _INSIDE * self._case.spacing
+        b.lead[coming[through]] = math.nan
+        coming = coming[~through].tolist()
+        for row in coming:
+            self._goal[row] = 0.0 if self._stopped(self._place(row), row) else self._inlet.surface_speed
+        for queue in self.queues if time >= 0.0 else ():
+            queue.waits = False
+            while queue.due and not queue.waits:
+                queue.waits = not self._enters(queue, time)
+                coming += [] if queue.waits else [queue.rows[queue.next - 1]]
+        self._inlet.cover([self._place(row) for row in coming])
+
+    def _place(self, row, around=0.0):
+        b = self._bodies
+        return Place(b.position[row] - around, matrices(b.quaternion[row : row + 1])[0], b.shapes[row])
+
+    def _plans(self, place, but):
+        """(Outlines of all that is there beside a body at a `place`, at its height, but a row; their speeds, m/s)."""
+        b, low, high, gap = self._bodies, place.low(), place.high(), self._case.spacing
+        found, speeds = outlines([], []), []
+        for row in np.flatnonzero(~b.gone & (np.arange(len(b)) != but)):
+            around = self._length * np.rint((b.position[row] - place.centre) / self._period)
+            if (abs(b.position[row] - around - place.centre) > b.radius[row] + place.reach + 4.0 * gap).any():
+                continue
+            there = self._place(row, around)
+            if there.low()[2] < high[2] + gap and there.high()[2] > low[2] - gap:
+                plan = plan_of(there, low[2] - gap)
+                found = joined(found, plan)
+                speeds += [b.velocity[row, 0]] * len(plan.cx)
+        return found, np.array(speeds)
+
+    def _stopped(self, place, row):
+        """Whether something slower is in the way of a floe that comes in, so near that it has to come to a stop."""
+        l0, speed = self._case.spacing, self._inlet.surface_speed
+        others, speeds = self._plans(place, row)
+        if not len(speeds) or speed <= 0.0:
+            return False
+        own = plan_of(place, -math.inf).take(np.zeros(len(speeds), int))
+        ahead = (_BRAKE + _NEAR) * l0 * np.clip(1.0 - speeds / speed, 0.0, 1.0)
+        then = gaps(own._replace(x=own.x + ahead[:, None], cx=own.cx + ahead), others).apart
+        return bool(((then < _NEAR * l0) & (then < gaps(own, others).apart)).any())
+
+    def _enters(self, queue, time):
+        """Let the next floe of a queue come in where there is room before the inlet; whether there is."""
+        b, k, case = self._bodies, queue.next, self._case
+        row, gap = queue.rows[k], queue.supply.apart(case)
+        key = queue.supply.seed, queue.supply.stream, k + 1
+        z = queue.height[k] + self._inlet.level - self._level
+        dice = evenly(key, _POSES, 2 * _TRIES)
+        for across, around in zip(dice[::2], dice[1::2], strict=True):
+            turn = 0.0 if case.dimensions == 2 else 360.0 * around
+            x, y, _ = queue.angles[k]
+            quaternion = np.array(turned(from_angles((x, y, turn)), b.shapes[row].turn))
+            place = Place(np.zeros(3), matrices(quaternion[None])[0], b.shapes[row])
+            low, high = place.low(), place.high()
+            left, right = case.box.min[1] + gap - low[1], case.box.max[1] - gap - high[1]
+            if case.dimensions == 3 and left > right:
+                continue
+            middle = 0.5 if case.dimensions == 2 else left + across * (right - left)
+            place = Place(np.array([self._inlet.x - gap - high[0], middle, z]), place.axes, place.shape)
+            others, speeds = self._plans(place, row)
+            own = plan_of(place, -math.inf).take(np.zeros(len(speeds), int))
+            if (gaps(own, others).apart < gap).any() or self._stopped(place, row):
+                continue
+            b.bring_in(row, place.centre, quaternion, time)
+            b.lead[row] = b.velocity[row, 0] = self._goal[row] = self._inlet.surface_speed
+            queue.next, queue.given = k + 1, queue.given + queue.amounts[k]
+            return True
+        return False
+
+    def kept(self) -> dict[str, np.ndarray]:
+        """What a restart needs."""
+        rows = [[q.next, q.wanted, q.given, q.blocked, float(q.waits)] for q in self.queues]
+        return {"queues": np.array(rows, float).reshape(-1, 5)}
+
+    def restore(self, kept: dict[str, np.ndarray]) -> None:
+        """Go on from what `kept` returned."""
+        for queue, row in zip(self.queues, np.array(kept["queues"]), strict=True):
+            number, queue.wanted, queue.given, queue.blocked, waits = map(float, row)
+            queue.next, queue.waits = int(number), bool(waits)
