@@ -131,6 +131,15 @@ def test_runs_that_fail_or_have_no_outcome_are_counted_and_not_made_again(study,
     assert study.told()["rows"][0]["outcomes"] == 5 and study.told()["complete"]
 
 
+def test_runs_that_end_before_they_write_anything_have_failed_and_are_made_again_later(study, monkeypatch, capsys):
+    machine = Machine(monkeypatch, lambda case, number: "crash")
+    assert study(BELOW + SEEDS % ", most = 2") == 1
+    assert study.told()["runs"]["failed"] == 2 and machine.numbers == [1, 2]
+    assert f"failed: ended before it wrote anything; see {study.out / 'run-1.log'}" in capsys.readouterr().out
+    machine.law = lambda case, number: 0.5
+    assert study(BELOW + SEEDS % ", most = 2") == 0 and machine.numbers == [1, 2, 1, 2]
+
+
 def test_a_run_that_fails_again_is_not_tried_for_ever(study, monkeypatch):
     machine = Machine(monkeypatch, lambda case, number: "fail")
     assert study(BELOW + SEEDS % ", most = 2") == 1 == study(BELOW + SEEDS % ", most = 2", "--retry")

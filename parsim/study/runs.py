@@ -60,13 +60,16 @@ class Runs:
         """The output folder of a run."""
         return self.out / f"run-{number}"
 
+    def log(self, number: int) -> Path:
+        """What a run has printed."""
+        return self.out / f"run-{number}.log"
+
     def enter(self, wanted: list[Wanted]) -> list[int]:
         """The number of each run; those that have none get the next ones, and a row of the table. Raises WriteError."""
         new = [run.changes for run in wanted if _key(run) not in self._numbers]
         for changes in new:
             self._numbers.setdefault(tuple(sorted(changes)), len(self._numbers) + 1)
         if new:
-            self.out.mkdir(parents=True, exist_ok=True)
             write_text(self.out / TABLE, self._written())
         return [self._numbers[_key(run)] for run in wanted]
 
@@ -101,6 +104,8 @@ class Runs:
     def _look(self, number, wanted):
         folder = self.folder(number)
         if not is_output(folder):
+            if number in self._given_up:
+                return Seen(number, FAILED, note=f"ended before it wrote anything; see {self.log(number)}")
             return Seen(number, WAITING)
         run, case = Run(folder), load(self.case, wanted.changes)
         self._check(run, case)
