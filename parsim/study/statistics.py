@@ -78,7 +78,7 @@ class Curve(NamedTuple):
 
     def at(self, x: np.ndarray) -> np.ndarray:
         """Probability (n,) at x (n,)."""
-        return 1.0 / (1.0 + np.exp(-self.slope * (x - self.middle)))
+        return np.exp(-np.logaddexp(0.0, -self.slope * (x - self.middle)))  # of a steep one the fraction overflows
 
 
 def logistic(x: Sequence[float], yes: Sequence[bool]) -> Curve | None:
