@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from study_cases import BELOW, NUMBER, SEARCH, SEEDS, write
+from study_cases import BELOW, NUMBER, OUTCOME, SEARCH, SEEDS, write
 
 from parsim.__main__ import main
 from parsim.case.load import load
@@ -70,6 +70,9 @@ def test_the_schema_knows_the_study_and_all_outcomes(capsys):
 @pytest.mark.parametrize(("text", "said"), [
     ("", "study.outcome: missing; what is asked of each finished run"),
     (NUMBER, "study: varies nothing; give seeds, table, grid or bisection"),
+    (OUTCOME % "above = 0.3, below = 0.3" + SEEDS % "", "outcome.above = 0.3: no number is above it and below 0.3; mu"),
+    (NUMBER + "grid = {spacing = [0.1, 0.2, 0.1]}", "study: rows 1 and 3 are the same, spacing=0.1"),
+    (NUMBER + "grid = {" + ", ".join(f"k{n} = {list(range(99))}" for n in range(9)) + "}", "study.grid: makes 9135172"),
     ('outcome = {kind = "lst"}', "did you mean last?"),
     ('outcome = {kind = "last", series = "bodies"}\n' + SEEDS % "", "study.outcome.column: missing"),
     (NUMBER.replace("column", "colum") + SEEDS % "", "study.outcome.colum: unknown key; did you mean study.outcome.c"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -122,9 +123,16 @@ def _faults(study):
         told += _of_seeds(study.seeds)
     if study.bisection:
         told += _of_bisection(study, study.bisection)
+    combinations = math.prod(map(len, study.grid.values()))
+    if combinations > MOST:
+        told.append(f"study.grid: makes {combinations} rows; at most {MOST}")
     if told:
         return told
     rows = study.rows()
+    first: dict[tuple[str, ...], int] = {}
+    for number, row in enumerate(rows, 1):
+        if (same := first.setdefault(tuple(sorted(row)), number)) < number:
+            told.append(f"study: rows {same} and {number} are the same, {', '.join(row)}; each must be there once")
     keys = [change.partition("=")[0] for change in rows[0]] if study.table is None else _columns(rows)
     keys += [part.key for part in (study.seeds, study.bisection) if part]
     told += [f"study: {key} is varied twice" for key in dict.fromkeys(keys) if keys.count(key) > 1]
