@@ -152,6 +152,20 @@ def test_a_grid_of_points_with_a_few_missing_has_holes(tmp_path):
     assert isinstance(surface, HeightField) and np.isnan(surface.z).sum() == 5
 
 
+@pytest.mark.parametrize(("head", "form"), [
+    ("x,y,z", "{x},{y},{z},top of bank"),
+    ("", "{x}, {y}, {z}"),
+    ("id;X;Y;Z", "P1;{x};{y};{z}"),
+    ('"z","y","x"', "{z},{y},{x}"),
+    ("of 1999\nn y x z\n(-) (m) (m) (m)", "7 {y} {x} {z}"),
+])  # fmt: skip
+def test_columns_are_those_that_a_head_names(tmp_path, head, form):
+    rows = [form.format(x=x, y=y, z=x + 10 * y) for x in (1, 2, 3) for y in (5, 6)]
+    (tmp_path / "a.csv").write_text("\n".join([head, *rows]))
+    surface = terrain.read(tmp_path / "a.csv")
+    assert surface.x.tolist() == [1, 2, 3] and surface.y.tolist() == [5, 6] and surface.z[2, 1] == 63
+
+
 def test_points_are_on_a_grid_by_where_they_are_not_by_single_steps():
     assert even(np.round(np.arange(50) * 2 / 3, 3)), "rounded to millimetres"
     assert not even(np.cumsum([1.0004] * 200 + [0.9996] * 200)), "off by 0.08 steps amid"
@@ -178,6 +192,8 @@ HEAD = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
     ("a.asc", HEAD + "1 2 3 x\n", "a height is no number: could not convert string to float: 'x'"),
     ("a.xyz", "1 2 3\n1 2\n", "line 2: 1 2: must be three numbers x, y, z"),
     ("a.xyz", "x y z\n1 2 3\n1 2 c\n", "line 3: 1 2 c: must be numbers x, y, z"),
+    ("a.csv", "305600,12;5106300,50;65,25\n", "line 1: 305600,12;5106300,50;65,25: must have its decimals behind po"),
+    ("a.xyz", "1 2 3\n4,5 6 7\n", "line 2: 4,5 6 7: must have its decimals behind points, not commas"),
     ("a.xyz", "1 2 3\n4 5 6\n", "holds 2 points; a surface needs three or more"),
     ("a.stl", "solid a\nendsolid a\n", "holds no triangles"),
     ("a.g1x", "", "no format of ground"),
