@@ -155,16 +155,17 @@ def _wet(z, y, level):
 
     Infinite where the ground ends before the water.
     """
-    low, high = [], []
+    low, high = list[float](), list[float]()
     for row in z:
         dry = ~(row < level)
         at = int(np.nanargmin(np.where(np.isnan(row), np.inf, row)))
         if dry[at]:
             continue
-        left, right = np.flatnonzero(dry[:at]), np.flatnonzero(dry[at:])
-        left, right = left[-1] if len(left) else None, at + right[0] if len(right) else None
-        low.append(-math.inf if left is None or np.isnan(row[left]) else y[left])
-        high.append(math.inf if right is None or np.isnan(row[right]) else y[right])
+        for ends, open_end, beside in (
+            (low, -math.inf, np.flatnonzero(dry[:at])[::-1]),
+            (high, math.inf, at + np.flatnonzero(dry[at:])),
+        ):
+            ends.append(y[beside[0]] if len(beside) and not np.isnan(row[beside[0]]) else open_end)
     return min(low), max(high)
 
 
