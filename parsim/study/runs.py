@@ -17,7 +17,7 @@ from parsim.output.lock import held
 from parsim.output.reader import Run, is_output
 from parsim.run.resume import changed_keys
 from parsim.study.plan import Ended, Wanted
-from parsim.study.table import Study
+from parsim.study.table import Study, cells
 
 TABLE = "runs.csv"
 DONE, FAILED, RUNNING, STOPPED, WAITING = "done", "failed", "running", "stopped", "waiting"
@@ -74,10 +74,9 @@ class Runs:
         return [self._numbers[_key(run)] for run in wanted]
 
     def _written(self):
-        rows = [dict(change.split("=", 1) for change in key) for key in self._numbers]
-        keys = list(dict.fromkeys(name for row in rows for name in row))
+        keys, rows = cells(self._numbers)
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows([keys, *([row.get(key, "") for key in keys] for row in rows)])
+        csv.writer(text, lineterminator="\n").writerows([keys, *rows])
         return text.getvalue()
 
     def known(self, run: Wanted) -> Ended | None:

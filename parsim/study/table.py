@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -133,7 +134,7 @@ def _faults(study):
     for number, row in enumerate(rows, 1):
         if (same := first.setdefault(tuple(sorted(row)), number)) < number:
             told.append(f"study: rows {same} and {number} are the same, {', '.join(row)}; each must be there once")
-    keys = [change.partition("=")[0] for change in rows[0]] if study.table is None else _columns(rows)
+    keys = [change.partition("=")[0] for change in rows[0]] if study.table is None else cells(rows)[0]
     keys += [part.key for part in (study.seeds, study.bisection) if part]
     told += [f"study: {key} is varied twice" for key in dict.fromkeys(keys) if keys.count(key) > 1]
     if study.fit and not (study.bisection or len(_varied(rows)) == 1):
@@ -145,9 +146,11 @@ def _faults(study):
     return told
 
 
-def _columns(rows):
-    """Every key that any row changes, once."""
-    return list(dict.fromkeys(change.partition("=")[0] for row in rows for change in row))
+def cells(rows: Iterable[Sequence[str]]) -> tuple[list[str], list[list[str]]]:
+    """The keys that any of the changes "key=value" name, once, and their values in each row, "" where it has none."""
+    tables = [dict(change.split("=", 1) for change in row) for row in rows]
+    keys = list(dict.fromkeys(key for table in tables for key in table))
+    return keys, [[table.get(key, "") for key in keys] for table in tables]
 
 
 def _varied(rows):
@@ -157,12 +160,12 @@ def _varied(rows):
 
 def numbers(rows: list[list[str]]) -> dict[str, list[float]]:
     """{key: its value in each row} of the keys that are a number in every row."""
-    tables = [dict(change.split("=", 1) for change in row) for row in rows]
+    keys, values = cells(rows)
     found = {}
-    for key in _columns(rows):
+    for key, column in zip(keys, zip(*values, strict=True), strict=True):
         try:
-            found[key] = [float(table[key]) for table in tables]
-        except (KeyError, ValueError):
+            found[key] = list(map(float, column))
+        except ValueError:
             continue
     return found
 
