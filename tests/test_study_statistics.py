@@ -77,6 +77,8 @@ def test_a_logistic_curve_is_that_of_a_published_example():
 
 def test_a_steep_curve_is_0_and_1_far_from_its_middle():
     with np.errstate(all="raise", under="ignore"):
+        nearly = logistic([-100.0, 0.0, 0.0, 0.0, 1e-4, 1e-4, 100.0], [0, 0, 0, 1, 0, 1, 1])
+        assert nearly[:2] == pytest.approx((math.log(2.0) / 1e-4, 1e-4), rel=1e-3)
         assert Curve(50.0, 5.0, 4.9, 5.1).at(np.array([-50.0, 5.0, 50.0])) == pytest.approx([0.0, 0.5, 1.0])
 
 
