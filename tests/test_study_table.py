@@ -87,6 +87,7 @@ def test_the_schema_knows_the_study_and_all_outcomes(capsys):
     (NUMBER + SEEDS % ", mst = 3", "study.seeds.mst: unknown key; did you mean study.seeds.most"),
     (NUMBER + SEEDS % ", most = 0", "study.seeds.most = 0: must be at least 1"),
     (NUMBER + SEEDS % ", within = 0.0", "study.seeds.within = 0.0: must be greater than 0"),
+    (NUMBER + SEEDS % ", most = 8, within = 0.1", "study.seeds.least = 10: must be at most study.seeds.most, 8"),
     (NUMBER + 'seeds = {key = "run.until", step = 0}', "study.seeds.step = 0: all runs would be the same"),
     (NUMBER + 'seeds = {key = "run..until"}', "study.seeds.key = 'run..until': must be a key of the case"),
     (NUMBER + 'seeds = {key = "water.sead"}', "water.sead: unknown key"),
@@ -117,6 +118,13 @@ def test_a_wrong_study_is_told_before_anything_is_written(text, said, tmp_path, 
     assert main(["study", str(path), "-o", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_table_is_not_replaced_by_that_of_the_runs(tmp_path, capsys):
+    (tmp_path / "runs.csv").write_text("bodies.sphere.density\n800\n")
+    path = write(tmp_path, NUMBER + SEEDS % "" + 'table = "runs.csv"\n')
+    assert main(["study", str(path), "-o", str(tmp_path), "--gather"]) == 2
+    assert "its runs.csv is study.table, and would be replaced; choose another folder" in capsys.readouterr().err
 
 
 def test_a_file_without_a_study_is_told(tmp_path):

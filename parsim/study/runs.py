@@ -47,6 +47,8 @@ class Runs:
         self._given_up: set[int] = set()
         if is_output(out):
             raise InputError(f"OUT = {out}: is the output folder of one run; give the study a folder of its own")
+        if study.table is not None and Path(study.table) == (out / TABLE).resolve():
+            raise InputError(f"OUT = {out}: its {TABLE} is study.table, and would be replaced; choose another folder")
         if (out / TABLE).is_file():
             rows = runs_table.rows(out / TABLE)
             self._numbers = {tuple(sorted(row)): number for number, row in enumerate(rows, 1)}

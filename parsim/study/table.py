@@ -174,6 +174,10 @@ def _of_seeds(seeds):
     told = []
     if seeds.step == 0 and seeds.most > 1:
         told.append("study.seeds.step = 0: all runs would be the same; must not be zero")
+    if seeds.within is not None and seeds.least > seeds.most:
+        told.append(
+            f"study.seeds.least = {seeds.least}: must be at most study.seeds.most, {seeds.most}, or within ends nothing"
+        )
     if not all(seeds.key.split(".")):
         told.append(f"study.seeds.key = {seeds.key!r}: must be a key of the case, such as water.disorder")
     return told
