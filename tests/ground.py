@@ -3,7 +3,6 @@
 import numpy as np
 import trimesh
 
-from parsim.terrain import ascii
 from parsim.terrain.height_field import HeightField
 
 X, Y = np.linspace(100.0, 104.0, 41), np.linspace(200.0, 202.0, 21)
@@ -24,12 +23,30 @@ def field(shape=plane, x=X, y=Y):
     return HeightField(x, y, shape(*np.meshgrid(x, y, indexing="ij")))
 
 
+def write(path, field):
+    """Write heights on a grid of square cells as an ESRI ASCII raster."""
+    size = field.x[1] - field.x[0]
+    head = {
+        "ncols": len(field.x),
+        "nrows": len(field.y),
+        "xllcenter": repr(float(field.x[0])),
+        "yllcenter": repr(float(field.y[0])),
+        "cellsize": repr(float(size)),
+        "NODATA_value": -9999,
+    }
+    rows = np.where(np.isnan(field.z), -9999.0, field.z).T[::-1]
+    text = "\n".join(
+        [*(f"{key} {value}" for key, value in head.items()), *(" ".join(map(repr, r.tolist())) for r in rows)]
+    )
+    path.write_text(text + "\n", encoding="utf-8")
+
+
 def raster(folder, shape=plane, holes=(), name="ground.asc"):
     """An ESRI ASCII file of a shape, without data at nodes (i, j)."""
     z = field(shape).z.copy()
     for i, j in holes:
         z[i, j] = np.nan
-    ascii.write(folder / name, HeightField(X, Y, z))
+    write(folder / name, HeightField(X, Y, z))
     return folder / name
 
 

@@ -46,7 +46,7 @@ class Machine:
     """Makes runs as `subprocess.Popen` of side.py; each is done after `slower` looks more than the one before.
 
     `law`(case, number) is the height at which the sphere ends; or how the run ends otherwise: "fail", "kill", "stop",
-    "bad", "full". `calls`: the words of each, `most`: how many were there at a time.
+    "bad", "full", "crash" before it writes anything. `calls`: the words of each, `most`: how many were there at a time.
     """
 
     def __init__(self, monkeypatch, law, slower=0):
@@ -103,6 +103,8 @@ class Process:
             self.log.write(b"error: one thing\nerror: the other\n")
             self.log.flush()
             return 2 if said == "bad" else 74
+        if said == "crash":
+            return 1
         folder(out, case, said)
         return {"fail": 1, "kill": -9, "stop": 75}.get(said, 0)
 

@@ -168,7 +168,8 @@ def test_a_bed_may_be_of_sections_or_points(tmp_path):
     (['bed.material="rocks"'], 'bodies.bed.material = "rocks": no such material; allowed: rock; did you mean rock?'),
     (["materials={}"], "bed.material: missing; a bed needs a material"),
     (["dimensions=2"], "bed: a 2D case has none; a polygon that is fixed is one"),
-    (["bed.resolution=0.001", "box.max=[2.0,1.6,20.0]"], "makes a field of 1.58e+09 nodes; at most 6.4e+07"),
+    (["bed.resolution=1e-5"], 'ground.asc": bed.resolution = 1e-05: makes 3.2e+10 heights; at most 6.4e+07'),
+    (["bed.resolution=0.001", "box.max=[2.0,1.6,20.0]"], ": bed.resolution = 0.001: makes a field of 1.58e+09 nodes"),
     (['box.faces={x_min="periodic",x_max="periodic"}'], 'box.faces.x_min = "periodic" cannot be with it'),
     (["bed.dautm=1.0"], "bed.dautm: unknown key; did you mean bed.datum?"),
 ])  # fmt: skip

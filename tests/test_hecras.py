@@ -135,6 +135,8 @@ def _with(old, new, station=2):
     (_with("Elev= 4", "Elev= 6"), "#Sta/Elev: a field of 8 columns is no number: could not convert"),
     (_with("Elev= 4", "Elev= x"), "#Sta/Elev= x: must begin with a whole number"),
     (_with("      30      10", "       3      10"), "#Sta/Elev: station 3 comes after 10; stations must ascend"),
+    (_with("      30      10", "     nan      10"), "section 2 (line 7): #Sta/Elev: holds nan; must be finite"),
+    (_with("2    ,5,5,5", "2    ,5,inf,5"), "section 2: the length of its channel to section 1 is inf; must"),
     (_with("Sta=10,30", "Sta=10,50"), "Bank Sta = (10.0, 50.0): must be two stations, left and right, from 0 to 40"),
     (_with("Sta=10,30", "Sta=ten,30"), "Bank Sta=ten,30: must be numbers"),
     (_with("Bank Sta=10,30", ""), "Bank Sta = None: must be two stations"),

@@ -4,9 +4,15 @@ import numpy as np
 import pytest
 from ground import channel, raster, reach
 
+from parsim import terrain
 from parsim.__main__ import main
 from parsim.case.model import load
-from parsim.commands.new_reach import roughness
+from parsim.commands.new_reach import Asked, _cut, roughness
+
+
+def bank(x, y):
+    """Heights of a plane that rises to the left."""
+    return 4.0 + 0.3 * (y - 200.0) + 0.0 * x
 
 
 def told(capsys, *words):
@@ -83,6 +89,29 @@ def test_a_file_in_feet_is_a_box_in_metres(tmp_path, capsys, monkeypatch):
     )
 
 
+def test_holes_in_the_box_are_told_by_their_place_in_the_file(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    raster(tmp_path, channel, holes=[(20, 10)])
+    code, said = told(capsys, "pool", "--from", "ground.asc", "--level", 4.1, "--spacing", 0.1)
+    assert code == 2 and "--from: no data at 4 of 924 places in the box, such as x = 101.95, y = 200.95" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["ground.asc"]
+
+
+@pytest.mark.parametrize(("shape", "level", "held"), [(channel, 4.1, False), (channel, 4.4, True), (bank, 4.1, True)])
+def test_water_that_reaches_the_end_of_the_ground_is_told(tmp_path, shape, level, held):
+    source = raster(tmp_path, shape)
+    box = _cut(terrain.read(source), [], (101.0, 103.0), Asked(level=level, spacing=0.1))
+    assert box.held == held
+
+
+def test_what_one_that_was_killed_has_left_is_in_no_ones_way(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".river.part").mkdir()
+    raster(tmp_path, channel)
+    code, said = told(capsys, "river", "--from", "ground.asc", "--level", 4.4, "--spacing", 0.2)
+    assert code == 0 and "there a side of the box holds the water" in said, said
+
+
 @pytest.mark.parametrize(("words", "said"), [
     ([], "--level: missing; the level of the water, a height in the file, whose ground reaches from 9.9 to 13, the "
      "banks from 11.9"),
@@ -90,7 +119,10 @@ def test_a_file_in_feet_is_a_box_in_metres(tmp_path, capsys, monkeypatch):
     (["--level", 11, "--from-station", 310], "--from-station 310: must be from 300 to 200"),
     (["--level", 11, "--to-station", 100], "--to-station 100: must be from 300 to 200"),
     (["--level", 11, "--from-station", 220, "--to-station", 250], "--to-station 250: must be downstream of"),
-    (["--level", 11, "--spacing", 200], "spacing = 200: the reach is 100 m long; must be less"),
+    (["--level", 11, "--spacing", 200], "--spacing 200: the reach is 100 m long, its ground without holes 40 m wide"),
+    (["--level", "nan"], "--level nan: must be a finite number"),
+    (["--level", "inf"], "--level inf: must be a finite number"),
+    (["--level", 11, "--spacing", 0.001], "--spacing 0.001: makes a bed of 100000 x 1"),
     (["--level", 11, "--river-reach", "Mode, Up"], 'has no reach "Mode, Up"; allowed: Made, Up; did you mean'),
 ])  # fmt: skip
 def test_what_is_missing_or_wrong_is_told_and_nothing_written(tmp_path, capsys, monkeypatch, words, said):

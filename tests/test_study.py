@@ -110,7 +110,8 @@ def test_a_search_without_an_edge_ends_with_1(study, monkeypatch, capsys):
     Machine(monkeypatch, lambda case, number: 0.9)
     assert study(BELOW + SEARCH % "") == 1
     assert "no edge: bodies.sphere.position.2 = 0.1 has the outcome no" in capsys.readouterr().out
-    assert "no edge" in (study.out / "index.html").read_text()
+    page = (study.out / "index.html").read_text()
+    assert "no edge" in page and page.count("0.5<") == 1, "only among the runs"
 
 
 def test_runs_that_fail_or_have_no_outcome_are_counted_and_not_made_again(study, monkeypatch, capsys):
@@ -129,6 +130,15 @@ def test_runs_that_fail_or_have_no_outcome_are_counted_and_not_made_again(study,
     assert study(BELOW + SEEDS % ", most = 6", "--retry") == 0
     assert machine.numbers[7:] == [1] and machine.calls[7][0] == "resume"
     assert study.told()["rows"][0]["outcomes"] == 5 and study.told()["complete"]
+
+
+def test_runs_that_end_before_they_write_anything_have_failed_and_are_made_again_later(study, monkeypatch, capsys):
+    machine = Machine(monkeypatch, lambda case, number: "crash")
+    assert study(BELOW + SEEDS % ", most = 2") == 1
+    assert study.told()["runs"]["failed"] == 2 and machine.numbers == [1, 2]
+    assert f"failed: ended before it wrote anything; see {study.out / 'run-1.log'}" in capsys.readouterr().out
+    machine.law = lambda case, number: 0.5
+    assert study(BELOW + SEEDS % ", most = 2") == 0 and machine.numbers == [1, 2, 1, 2]
 
 
 def test_a_run_that_fails_again_is_not_tried_for_ever(study, monkeypatch):

@@ -32,11 +32,12 @@ def run(tmp_path_factory):
     for step, time in enumerate((-0.5, 0.0, 0.5, 1.0, 1.5)):
         table.row(step, time, "A", 1.0 - 0.25 * step, 7.0)
         table.row(step, time, "B", time * time, float("inf"))
+        table.row(step, time, "dry", time if time >= 0.5 else float("nan"), float("nan"))
     table.close()
     return parsim.open(folder)
 
 
-A, B = {"body": "A"}, {"body": "B"}
+A, B, DRY = {"body": "A"}, {"body": "B"}, {"body": "dry"}
 
 
 @pytest.mark.parametrize(("keys", "value"), [
@@ -56,6 +57,8 @@ A, B = {"body": "A"}, {"body": "B"}
     ({"kind": "crossing_time", "rows": B, "level": 0.625}, 0.75),
     ({"kind": "crossing_time", "rows": A, "level": 0.75}, 0.0),
     ({"kind": "crossing_time", "rows": A, "level": -9.0}, None),
+    ({"kind": "crossing_time", "rows": DRY, "level": 0.75}, 0.75),  # as a gauge that water has not reached yet
+    ({"kind": "crossing_time", "column": "e", "rows": DRY, "level": 0.75}, None),
     ({"kind": "crossing_time", "rows": A, "level": -9.0, "below": 1.0}, None),
     ({"kind": "maximum", "column": "e", "rows": B}, None),
     ({"kind": "last", "rows": A, "below": 0.5}, True),
@@ -73,7 +76,7 @@ def test_outcomes_of_a_known_series(keys, value, run):
 @pytest.mark.parametrize(("keys", "said"), [
     ({"kind": "last"}, "has several rows at a time; tell one, as by rows"),
     ({"kind": "crossed", "level": 0.5}, "has several rows at a time"),
-    ({"kind": "last", "rows": {"body": "C"}}, "rows.body = 'C': no such row in the series places; there are: A, B"),
+    ({"kind": "last", "rows": {"body": "C"}}, "rows.body = 'C': no such row in .*; there are: A, B, dry"),
     ({"kind": "mean", "after": 9.0}, "the series places has no row from t = 9 s on"),
     ({"kind": "last", "series": "place"}, "series = 'place': not in .*did you mean places"),
     ({"kind": "last", "rows": A, "column": "zz"}, "study.outcome: KeyError: 'zz'"),

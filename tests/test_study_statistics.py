@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from parsim.study.statistics import bootstrap, estimate, logistic, wilson
+from parsim.study.statistics import Curve, bootstrap, estimate, logistic, wilson
 
 # pass an exam after so many hours of study: the example of "Logistic regression", Wikipedia, whose table of 20 students
 # gives an intercept of -4.0777 and 1.5046 per hour
@@ -73,6 +73,13 @@ def test_a_logistic_curve_is_that_of_a_published_example():
     assert curve.slope == pytest.approx(1.5046, abs=1e-4)
     assert curve.middle == pytest.approx(4.0777 / 1.5046, abs=1e-4)
     assert curve.at(np.array([2.0])) == pytest.approx([1.0 / (1.0 + math.exp(4.0777 - 2.0 * 1.5046))], abs=1e-4)
+
+
+def test_a_steep_curve_is_0_and_1_far_from_its_middle():
+    with np.errstate(all="raise", under="ignore"):
+        nearly = logistic([-100.0, 0.0, 0.0, 0.0, 1e-4, 1e-4, 100.0], [0, 0, 0, 1, 0, 1, 1])
+        assert nearly[:2] == pytest.approx((math.log(2.0) / 1e-4, 1e-4), rel=1e-3)
+        assert Curve(50.0, 5.0, 4.9, 5.1).at(np.array([-50.0, 5.0, 50.0])) == pytest.approx([0.0, 0.5, 1.0])
 
 
 def test_two_places_are_met_exactly_with_the_error_of_their_counts():

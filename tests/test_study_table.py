@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from study_cases import BELOW, NUMBER, SEARCH, SEEDS, write
+from study_cases import BELOW, NUMBER, OUTCOME, SEARCH, SEEDS, write
 
 from parsim.__main__ import main
 from parsim.case.load import load
@@ -70,6 +70,9 @@ def test_the_schema_knows_the_study_and_all_outcomes(capsys):
 @pytest.mark.parametrize(("text", "said"), [
     ("", "study.outcome: missing; what is asked of each finished run"),
     (NUMBER, "study: varies nothing; give seeds, table, grid or bisection"),
+    (OUTCOME % "above = 0.3, below = 0.3" + SEEDS % "", "outcome.above = 0.3: no number is above it and below 0.3; mu"),
+    (NUMBER + "grid = {spacing = [0.1, 0.2, 0.1]}", "study: rows 1 and 3 are the same, spacing=0.1"),
+    (NUMBER + "grid = {" + ", ".join(f"k{n} = {list(range(99))}" for n in range(9)) + "}", "study.grid: makes 9135172"),
     ('outcome = {kind = "lst"}', "did you mean last?"),
     ('outcome = {kind = "last", series = "bodies"}\n' + SEEDS % "", "study.outcome.column: missing"),
     (NUMBER.replace("column", "colum") + SEEDS % "", "study.outcome.colum: unknown key; did you mean study.outcome.c"),
@@ -84,6 +87,7 @@ def test_the_schema_knows_the_study_and_all_outcomes(capsys):
     (NUMBER + SEEDS % ", mst = 3", "study.seeds.mst: unknown key; did you mean study.seeds.most"),
     (NUMBER + SEEDS % ", most = 0", "study.seeds.most = 0: must be at least 1"),
     (NUMBER + SEEDS % ", within = 0.0", "study.seeds.within = 0.0: must be greater than 0"),
+    (NUMBER + SEEDS % ", most = 8, within = 0.1", "study.seeds.least = 10: must be at most study.seeds.most, 8"),
     (NUMBER + 'seeds = {key = "run.until", step = 0}', "study.seeds.step = 0: all runs would be the same"),
     (NUMBER + 'seeds = {key = "run..until"}', "study.seeds.key = 'run..until': must be a key of the case"),
     (NUMBER + 'seeds = {key = "water.sead"}', "water.sead: unknown key"),
@@ -114,6 +118,13 @@ def test_a_wrong_study_is_told_before_anything_is_written(text, said, tmp_path, 
     assert main(["study", str(path), "-o", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_table_is_not_replaced_by_that_of_the_runs(tmp_path, capsys):
+    (tmp_path / "runs.csv").write_text("bodies.sphere.density\n800\n")
+    path = write(tmp_path, NUMBER + SEEDS % "" + 'table = "runs.csv"\n')
+    assert main(["study", str(path), "-o", str(tmp_path), "--gather"]) == 2
+    assert "its runs.csv is study.table, and would be replaced; choose another folder" in capsys.readouterr().err
 
 
 def test_a_file_without_a_study_is_told(tmp_path):

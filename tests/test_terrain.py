@@ -8,9 +8,8 @@ from ground import X, Y, channel, field, plane, raster, scattered, sheet
 
 from parsim import terrain
 from parsim.errors import InputError
-from parsim.terrain import ascii
 from parsim.terrain.frame import Frame, along
-from parsim.terrain.height_field import HeightField
+from parsim.terrain.height_field import HeightField, even
 from parsim.terrain.triangles import Triangles
 
 WHOLE = Frame((100.0, 200.0))
@@ -90,14 +89,6 @@ def test_feet_and_another_datum_are_told_by_the_frame():
     assert along((1.0, 1.0), (2.0, 2.0)) == ((1.0, 1.0), pytest.approx(45.0))
 
 
-def test_a_part_of_a_raster_has_the_nodes_around_a_rectangle():
-    part = field().crop((100.55, 200.0), (101.0, 200.31))
-    assert part.x == pytest.approx(np.arange(100.5, 101.05, 0.1)) and part.y == pytest.approx(
-        [200, 200.1, 200.2, 200.3, 200.4]
-    )
-    assert part.at(np.array([100.77]), np.array([200.13])) == pytest.approx(plane(100.77, 200.13))
-
-
 def test_between_nodes_heights_are_bilinear():
     surface = field(lambda x, y: (x - 100.0) * (y - 200.0))
     assert surface.at(np.array([101.23]), np.array([200.77])) == pytest.approx(1.23 * 0.77)
@@ -161,9 +152,27 @@ def test_a_grid_of_points_with_a_few_missing_has_holes(tmp_path):
     assert isinstance(surface, HeightField) and np.isnan(surface.z).sum() == 5
 
 
+@pytest.mark.parametrize(("head", "form"), [
+    ("x,y,z", "{x},{y},{z},top of bank"),
+    ("", "{x}, {y}, {z}"),
+    ("id;X;Y;Z", "P1;{x};{y};{z}"),
+    ('"z","y","x"', "{z},{y},{x}"),
+    ("of 1999\nn y x z\n(-) (m) (m) (m)", "7 {y} {x} {z}"),
+])  # fmt: skip
+def test_columns_are_those_that_a_head_names(tmp_path, head, form):
+    rows = [form.format(x=x, y=y, z=x + 10 * y) for x in (1, 2, 3) for y in (5, 6)]
+    (tmp_path / "a.csv").write_text("\n".join([head, *rows]))
+    surface = terrain.read(tmp_path / "a.csv")
+    assert surface.x.tolist() == [1, 2, 3] and surface.y.tolist() == [5, 6] and surface.z[2, 1] == 63
+
+
+def test_points_are_on_a_grid_by_where_they_are_not_by_single_steps():
+    assert even(np.round(np.arange(50) * 2 / 3, 3)), "rounded to millimetres"
+    assert not even(np.cumsum([1.0004] * 200 + [0.9996] * 200)), "off by 0.08 steps amid"
+
+
 def test_ascii_is_read_as_it_was_written(tmp_path):
-    ascii.write(tmp_path / "a.asc", field())
-    again = terrain.read(tmp_path / "a.asc")
+    again = terrain.read(raster(tmp_path))
     assert np.array_equal(again.z, field().z) and again.x == pytest.approx(X) and again.y == pytest.approx(Y)
 
 
@@ -176,10 +185,15 @@ HEAD = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
     ("a.asc", "1 2 3\n", "its head lacks ncols, nrows, cellsize, xllcorner or xllcenter, yllcorner or yllcenter"),
     ("a.asc", HEAD.replace("cellsize 1", "cellsize 0"), "ncols = 2, nrows = 2, cellsize = 0: must be greater than 0"),
     ("a.asc", HEAD.replace("cellsize 1", "cellsize one"), "cellsize one: must be a number"),
+    ("a.asc", HEAD.replace("ncols 2", "ncols 2.7"), "ncols 2.7: must be a whole number"),
+    ("a.asc", HEAD.replace("ncols 2", "ncols nan"), "ncols nan: must be finite"),
+    ("a.asc", HEAD.replace("xllcorner 0", "XLLCORNER inf"), "XLLCORNER inf: must be finite"),
     ("a.asc", HEAD + "1 2 3\n", "holds 3 heights; ncols = 2, nrows = 2 need 4"),
     ("a.asc", HEAD + "1 2 3 x\n", "a height is no number: could not convert string to float: 'x'"),
     ("a.xyz", "1 2 3\n1 2\n", "line 2: 1 2: must be three numbers x, y, z"),
     ("a.xyz", "x y z\n1 2 3\n1 2 c\n", "line 3: 1 2 c: must be numbers x, y, z"),
+    ("a.csv", "305600,12;5106300,50;65,25\n", "line 1: 305600,12;5106300,50;65,25: must have its decimals behind po"),
+    ("a.xyz", "1 2 3\n4,5 6 7\n", "line 2: 4,5 6 7: must have its decimals behind points, not commas"),
     ("a.xyz", "1 2 3\n4 5 6\n", "holds 2 points; a surface needs three or more"),
     ("a.stl", "solid a\nendsolid a\n", "holds no triangles"),
     ("a.g1x", "", "no format of ground"),

@@ -1,5 +1,7 @@
 """The table [bed] of a case: ground from a file over the whole box, which becomes a fixed body."""
 
+import re
+
 from pydantic import Field
 
 from parsim.case.fill import TOUCH
@@ -34,11 +36,11 @@ def body_of(case):
     shape = BedShape(
         kind="bed", low=case.box.min, high=case.box.max[:2], resolution=bed.resolution or case.spacing, **place
     )
-    wrong = [text.removeprefix("shape.file: ").removeprefix("shape: ") for text in shape.faults(False)]
+    wrong = [re.sub("^shape(.file)?: ", "", text) for text in shape.faults(False)]
     if not wrong and (most := float(shape.heights.z.max())) > case.box.max[2] + TOUCH:
         wrong = [f"its ground reaches up to z = {most:.6g} m, the box to {case.box.max[2]:g}; change box.max or datum"]
     if wrong:
-        return {}, [f"{key}: {text}" for text in wrong]
+        return {}, [f"{key}: {text}".replace(": shape.", ": bed.") for text in wrong]
     material = bed.material or case.wall_material or next(iter(case.materials), "")
     body = {"name": NAME, "shape": shape, "density": DENSITY, "position": shape.centre, "material": material}
     return body | {"fixed": True}, []

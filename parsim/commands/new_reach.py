@@ -17,6 +17,7 @@ from parsim.terrain.frame import Frame
 GRAVITY = 9.81  # m/s2
 _LOOKS = 401  # places along and across at which the ground is looked at first
 _ROWS = 10  # particles over the greatest depth, where no spacing is asked for
+_MOST = 10**7  # heights of a bed: its field has several nodes under each
 _BANK = 4  # spacings of dry bank beside the water, and of ground under it: what the water sees
 
 
@@ -33,12 +34,14 @@ class Asked(NamedTuple):
 
 
 class _Cut(NamedTuple):
-    """The box of a reach: spacing, m; origin and datum in the file; counts of spacings (x, y, level, top)."""
+    """The box of a reach: spacing, m; origin and datum in the file; counts of spacings (x, y, level, top); whether
+    there is water where the ground ends."""
 
     spacing: float
     origin: tuple
     datum: float
     counts: tuple
+    held: bool
 
 
 def roughness(manning: float) -> float:
@@ -60,6 +63,7 @@ def new_reach(name: str, source: Path, asked: Asked) -> None:
     box = _cut(surface, nodes, ends, asked)
     n = sections.manning(nodes, *ends) if nodes else None
     part = folder.with_name(f".{folder.name}.part")
+    shutil.rmtree(part, ignore_errors=True)  # of one that was killed
     try:
         part.mkdir(parents=True)
         shutil.copy(source, part / source.name)
@@ -72,6 +76,8 @@ def new_reach(name: str, source: Path, asked: Asked) -> None:
         shutil.rmtree(part, ignore_errors=True)
     nx, ny, level, top = box.counts
     print(f"a box of {nx * box.spacing:g} x {ny * box.spacing:g} x {top * box.spacing:g} m, spacing {box.spacing:g} m")
+    if box.held:
+        print("beside the water the ground ends, or has holes: there a side of the box holds the water")
     if n is not None:
         print(
             f"Manning's n {n:.4g} between the banks is a roughness ks of {roughness(n):.4g} m: "
@@ -102,6 +108,8 @@ def _cut(surface, nodes, ends, asked):
     whole = np.flatnonzero(~np.isnan(z).any(axis=0))
     if not len(whole):
         raise InputError("--from: there is no strip along x without holes in the ground; choose other stations")
+    if asked.level is not None and not math.isfinite(asked.level):
+        raise InputError(f"--level {asked.level:g}: must be a finite number")
     lowest, highest = float(np.nanmin(z)), float(np.nanmax(z))
     if asked.level is None:
         banks = [np.interp(node.banks, node.station, node.elevation).min() for node in nodes]
@@ -117,29 +125,47 @@ def _cut(surface, nodes, ends, asked):
     spacing = asked.spacing or _nice(scale * (asked.level - lowest) / _ROWS)
     unit = spacing / scale
     low, high = _wet(z, y, asked.level)
+    held = low < y[whole[0]] or high > y[whole[-1]]
     low, high = max(low - _BANK * unit, y[whole[0]]), min(high + _BANK * unit, y[whole[-1]])
     nx, ny = math.floor((ends[1] - ends[0]) / unit + 1e-6), math.floor((high - low) / unit + 1e-6)
     if min(nx, ny) < 1:
-        raise InputError(f"spacing = {spacing:g}: the reach is {scale * (ends[1] - ends[0]):g} m long; must be less")
+        raise InputError(
+            f"--spacing {spacing:g}: the reach is {scale * (ends[1] - ends[0]):g} m long, its ground without holes "
+            f"{scale * (high - low):g} m wide; must be less"
+        )
+    if nx * ny > _MOST:
+        raise InputError(f"--spacing {spacing:g}: makes a bed of {nx} x {ny} heights; at most {_MOST:g}")
     under = math.ceil((asked.level - lowest) / unit - 1e-6) + _BANK
     datum = asked.level - under * unit
     frame = Frame((ends[0], low), 0.0, datum, scale)
     ground = surface.on(spacing * np.arange(nx + 1), spacing * np.arange(ny + 1), frame).z
-    top = max(math.ceil(np.nanmax(ground) / spacing), under + (under - _BANK + 1) // 2)
-    return _Cut(spacing, frame.origin, datum, (nx, ny, under, top))
+    if np.isnan(ground).any():
+        i, j = np.argwhere(np.isnan(ground))[0]
+        raise InputError(
+            f"--from: no data at {np.isnan(ground).sum()} of {ground.size} places in the box, such as "
+            f"x = {ends[0] + i * unit:.10g}, y = {low + j * unit:.10g} in the file; fill them in it, or choose "
+            "other stations"
+        )
+    top = max(math.ceil(ground.max() / spacing), under + (under - _BANK + 1) // 2)
+    return _Cut(spacing, frame.origin, datum, (nx, ny, under, top), held)
 
 
 def _wet(z, y, level):
-    """From where to where across there is water that is one with that over the lowest ground of its section."""
-    low, high = [], []
+    """From where to where across there is water that is one with that over the lowest ground of its section.
+
+    Infinite where the ground ends before the water.
+    """
+    low, high = list[float](), list[float]()
     for row in z:
         dry = ~(row < level)
         at = int(np.nanargmin(np.where(np.isnan(row), np.inf, row)))
         if dry[at]:
             continue
-        left, right = np.flatnonzero(dry[:at]), np.flatnonzero(dry[at:])
-        low.append(y[left[-1]] if len(left) else y[0])
-        high.append(y[at + right[0]] if len(right) else y[-1])
+        for ends, open_end, beside in (
+            (low, -math.inf, np.flatnonzero(dry[:at])[::-1]),
+            (high, math.inf, at + np.flatnonzero(dry[at:])),
+        ):
+            ends.append(y[beside[0]] if len(beside) and not np.isnan(row[beside[0]]) else open_end)
     return min(low), max(high)
 
 

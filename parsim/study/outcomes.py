@@ -40,6 +40,10 @@ def crossing_time(
 ) -> float:
     """Time, s, at which a column of a series first gets to a level, between its rows by a straight line; else none."""
     times, values = track(run, series, column, rows, after)
+    known = ~np.isnan(values)
+    if not known.any():
+        return math.nan
+    times, values = times[known], values[known]
     ahead = (values - level) * (1.0 if values[0] < level else -1.0)  # negative until the level is reached
     reached = np.flatnonzero(ahead >= 0.0)
     if not reached.size:
@@ -121,6 +125,11 @@ class Asked(Table):
         told = []
         if _is_bool(self.function) and not (self.above is None and self.below is None):
             told.append(f"study.outcome: {getattr(self, CHOICE)} says yes or no by itself; leave above and below out")
+        elif self.above is not None and self.below is not None and self.above >= self.below:
+            told.append(
+                f"study.outcome.above = {self.above!r}: no number is above it and below {self.below!r}; must be less "
+                "than study.outcome.below"
+            )
         series, rows = getattr(self, "series", None), getattr(self, "rows", None) or {}
         if series is not None and series not in TABLES:
             told.append(_unknown("series", series, TABLES))

@@ -13,6 +13,7 @@ from parsim.report.curves import ACCENT, FAINT, INK, WATER, figure
 from parsim.report.page import listing, page, picture, section, table
 from parsim.study.result import Result, shown
 from parsim.study.statistics import wilson
+from parsim.study.table import cells
 
 _SIZE, _DOTS, _SMALL = (6.0, 3.6), 150, 9  # inches, dots per inch, points: legible on a narrow screen too
 _FINE = 200  # points of a curve
@@ -111,8 +112,13 @@ def _tables(found):
     if found.study.bisection:
         titles = ("row", "no at", "yes at", "runs", "beside it")
         words = {None: "not looked at", True: "as expected", False: "NOT as expected"}
-        rows = [(r.label, r.edge.no, r.edge.yes, len(r.outcomes), words[r.edge.monotone]) for r in found.rows if r.edge]
-        told = [line for row in found.rows for line in _of_curve(found.key, row.curve)]
+        edges = [(row, row.edge) for row in found.rows if row.edge]
+        ends = [(None, None) if edge.note else (edge.no, edge.yes) for _, edge in edges]
+        rows = [
+            (row.label, *pair, len(row.outcomes), words[edge.monotone])
+            for pair, (row, edge) in zip(ends, edges, strict=True)
+        ]
+        told = [f"{row.label}: {line}" for row in found.rows for line in _of_curve(found.key, row.curve)]
     elif found.study.outcome.decides:
         titles = ("row", "runs", "yes", "probability", "95 % from", "to")
         rows = [(r.label, len(r.outcomes), sum(map(bool, r.outcomes)), *_ends(r.estimate)) for r in found.rows]
@@ -135,12 +141,11 @@ def _ends(estimate):
 
 
 def _runs(found):
-    keys = list(dict.fromkeys(change.partition("=")[0] for run, _ in found.runs for change in run.changes))
+    keys, values = cells(run.changes for run, _ in found.runs)
     rows = []
-    for run, seen in found.runs:
-        values = dict(change.split("=", 1) for change in run.changes)
+    for (_, seen), changed in zip(found.runs, values, strict=True):
         told = seen.outcome if isinstance(seen.outcome, float) else shown(seen.outcome) or None
-        rows.append((seen.number or None, *(values.get(key, "") for key in keys), seen.state, told, seen.note))
+        rows.append((seen.number or None, *changed, seen.state, told, seen.note))
     return table(("run", *keys, "state", "outcome", ""), rows)
 
 

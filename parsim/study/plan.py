@@ -85,6 +85,11 @@ class Search:
         assert study.bisection is not None
         self._study, self._search, self.row, self.changes = study, study.bisection, row, changes
 
+    @property
+    def key(self) -> str:
+        """The key whose edge is looked for."""
+        return self._search.key
+
     def runs_at(self, value: float) -> Iterator[Wanted]:
         """The runs that may be made at a value of the key."""
         return _repeats(self._study, self.row, [*self.changes, f"{self._search.key}={value!r}"], value)
@@ -150,6 +155,7 @@ class Search:
         decided = vote(edge, self._search.votes, _between(side[-1], side[-2]))
         if decided:
             edge.monotone = decided[0] == expected
+        edge.note = ""  # where that cannot be decided, the edge is there all the same
         return edge
 
 
@@ -168,7 +174,8 @@ class _Votes:
             decided, pending = self._of(value, self._most[value])
             edge.wanted += pending
             if decided is None and not pending:
-                edge.note = edge.note or f"{value!r}: too many runs have failed for a majority"
+                key = self._plan.key
+                edge.note = edge.note or f"{key} = {value!r}: too many runs have failed, or have no outcome, to decide"
             found.append(decided)
         return None if edge.wanted or edge.note else [decided is True for decided in found]
 

@@ -15,7 +15,7 @@ from parsim.output.frames import write_text
 from parsim.study.plan import Edge, Sample, Search, Wanted
 from parsim.study.runs import DONE, FAILED, RUNNING, STOPPED, WAITING, Runs, Seen
 from parsim.study.statistics import Curve, Estimate, bootstrap, estimate, logistic
-from parsim.study.table import Study, numbers
+from parsim.study.table import Study, cells, numbers
 
 TABLE, SUMMARY = "study.csv", "study.json"
 
@@ -124,15 +124,12 @@ def write(found: Result, runs: Runs) -> None:
 
 
 def _table(found):
-    every = [(run, seen) for run, seen in found.runs]
-    keys = list(dict.fromkeys(change.partition("=")[0] for run, _ in every for change in run.changes))
+    keys, values = cells(run.changes for run, _ in found.runs)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["run", "row", *keys, "state", "outcome", "note"])
-    for run, seen in every:
-        values = dict(change.split("=", 1) for change in run.changes)
-        cells = [values.get(key, "") for key in keys]
-        table.writerow([seen.number or "", run.row, *cells, seen.state, shown(seen.outcome), seen.note])
+    for (run, seen), changed in zip(found.runs, values, strict=True):
+        table.writerow([seen.number or "", run.row, *changed, seen.state, shown(seen.outcome), seen.note])
     return text.getvalue()
 
 

@@ -17,7 +17,7 @@ from parsim.output.lock import held
 from parsim.output.reader import Run, is_output
 from parsim.run.resume import changed_keys
 from parsim.study.plan import Ended, Wanted
-from parsim.study.table import Study
+from parsim.study.table import Study, cells
 
 TABLE = "runs.csv"
 DONE, FAILED, RUNNING, STOPPED, WAITING = "done", "failed", "running", "stopped", "waiting"
@@ -47,6 +47,8 @@ class Runs:
         self._given_up: set[int] = set()
         if is_output(out):
             raise InputError(f"OUT = {out}: is the output folder of one run; give the study a folder of its own")
+        if study.table is not None and Path(study.table) == (out / TABLE).resolve():
+            raise InputError(f"OUT = {out}: its {TABLE} is study.table, and would be replaced; choose another folder")
         if (out / TABLE).is_file():
             rows = runs_table.rows(out / TABLE)
             self._numbers = {tuple(sorted(row)): number for number, row in enumerate(rows, 1)}
@@ -60,21 +62,23 @@ class Runs:
         """The output folder of a run."""
         return self.out / f"run-{number}"
 
+    def log(self, number: int) -> Path:
+        """What a run has printed."""
+        return self.out / f"run-{number}.log"
+
     def enter(self, wanted: list[Wanted]) -> list[int]:
         """The number of each run; those that have none get the next ones, and a row of the table. Raises WriteError."""
         new = [run.changes for run in wanted if _key(run) not in self._numbers]
         for changes in new:
             self._numbers.setdefault(tuple(sorted(changes)), len(self._numbers) + 1)
         if new:
-            self.out.mkdir(parents=True, exist_ok=True)
             write_text(self.out / TABLE, self._written())
         return [self._numbers[_key(run)] for run in wanted]
 
     def _written(self):
-        rows = [dict(change.split("=", 1) for change in key) for key in self._numbers]
-        keys = list(dict.fromkeys(name for row in rows for name in row))
+        keys, rows = cells(self._numbers)
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows([keys, *([row.get(key, "") for key in keys] for row in rows)])
+        csv.writer(text, lineterminator="\n").writerows([keys, *rows])
         return text.getvalue()
 
     def known(self, run: Wanted) -> Ended | None:
@@ -101,6 +105,8 @@ class Runs:
     def _look(self, number, wanted):
         folder = self.folder(number)
         if not is_output(folder):
+            if number in self._given_up:
+                return Seen(number, FAILED, note=f"ended before it wrote anything; see {self.log(number)}")
             return Seen(number, WAITING)
         run, case = Run(folder), load(self.case, wanted.changes)
         self._check(run, case)

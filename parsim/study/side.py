@@ -77,7 +77,7 @@ class Hands:
         if self.walltime is not None:
             left = max(round(self.walltime - stop.age()), 1)
             words += ["--walltime", f"{left // 60}:{left % 60:02d}"]
-        log = folder.with_suffix(".log")
+        log = runs.log(number)
         try:
             file = log.open("ab")
             began = file.seek(0, os.SEEK_END)
@@ -102,7 +102,7 @@ class Hands:
         if code == stop.STOPPED:
             self._stop()
         elif code in (exits.BAD_INPUT, exits.CANNOT_WRITE):
-            log = runs.folder(number).with_suffix(".log")
+            log = runs.log(number)
             said = log.read_bytes()[began:].decode(errors="replace").splitlines()
             why = [line.removeprefix("error: ") for line in said if line.startswith("error: ")] or [f"see {log}"]
             if code == exits.CANNOT_WRITE:

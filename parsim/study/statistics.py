@@ -78,7 +78,7 @@ class Curve(NamedTuple):
 
     def at(self, x: np.ndarray) -> np.ndarray:
         """Probability (n,) at x (n,)."""
-        return 1.0 / (1.0 + np.exp(-self.slope * (x - self.middle)))
+        return _share(self.slope * (x - self.middle))
 
 
 def logistic(x: Sequence[float], yes: Sequence[bool]) -> Curve | None:
@@ -98,7 +98,7 @@ def logistic(x: Sequence[float], yes: Sequence[bool]) -> Curve | None:
 
     b = np.zeros(2)
     for _ in range(_STEPS):
-        p = 1.0 / (1.0 + np.exp(-(b @ design)))
+        p = _share(b @ design)
         information = (design * (p * (1.0 - p))) @ design.T
         step = np.linalg.solve(information, design @ (outcome - p))
         while loss(b + step) > loss(b) and np.abs(step).max() > _CLOSE:
@@ -113,6 +113,11 @@ def logistic(x: Sequence[float], yes: Sequence[bool]) -> Curve | None:
     half = Z * math.sqrt(variance) * scale
     middle = shift + scale * middle
     return Curve(float(b[1] / scale), float(middle), float(middle - half), float(middle + half))
+
+
+def _share(x):
+    """1 / (1 + exp(-x)), without the overflow of exp."""
+    return np.exp(-np.logaddexp(0.0, -x))
 
 
 def _parted(yes, no):

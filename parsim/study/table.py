@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -122,10 +124,17 @@ def _faults(study):
         told += _of_seeds(study.seeds)
     if study.bisection:
         told += _of_bisection(study, study.bisection)
+    combinations = math.prod(map(len, study.grid.values()))
+    if combinations > MOST:
+        told.append(f"study.grid: makes {combinations} rows; at most {MOST}")
     if told:
         return told
     rows = study.rows()
-    keys = [change.partition("=")[0] for change in rows[0]] if study.table is None else _columns(rows)
+    first: dict[tuple[str, ...], int] = {}
+    for number, row in enumerate(rows, 1):
+        if (same := first.setdefault(tuple(sorted(row)), number)) < number:
+            told.append(f"study: rows {same} and {number} are the same, {', '.join(row)}; each must be there once")
+    keys = [change.partition("=")[0] for change in rows[0]] if study.table is None else cells(rows)[0]
     keys += [part.key for part in (study.seeds, study.bisection) if part]
     told += [f"study: {key} is varied twice" for key in dict.fromkeys(keys) if keys.count(key) > 1]
     if study.fit and not (study.bisection or len(_varied(rows)) == 1):
@@ -137,9 +146,11 @@ def _faults(study):
     return told
 
 
-def _columns(rows):
-    """Every key that any row changes, once."""
-    return list(dict.fromkeys(change.partition("=")[0] for row in rows for change in row))
+def cells(rows: Iterable[Sequence[str]]) -> tuple[list[str], list[list[str]]]:
+    """The keys that any of the changes "key=value" name, once, and their values in each row, "" where it has none."""
+    tables = [dict(change.split("=", 1) for change in row) for row in rows]
+    keys = list(dict.fromkeys(key for table in tables for key in table))
+    return keys, [[table.get(key, "") for key in keys] for table in tables]
 
 
 def _varied(rows):
@@ -149,12 +160,12 @@ def _varied(rows):
 
 def numbers(rows: list[list[str]]) -> dict[str, list[float]]:
     """{key: its value in each row} of the keys that are a number in every row."""
-    tables = [dict(change.split("=", 1) for change in row) for row in rows]
+    keys, values = cells(rows)
     found = {}
-    for key in _columns(rows):
+    for key, column in zip(keys, zip(*values, strict=True), strict=True):
         try:
-            found[key] = [float(table[key]) for table in tables]
-        except (KeyError, ValueError):
+            found[key] = list(map(float, column))
+        except ValueError:
             continue
     return found
 
@@ -163,6 +174,10 @@ def _of_seeds(seeds):
     told = []
     if seeds.step == 0 and seeds.most > 1:
         told.append("study.seeds.step = 0: all runs would be the same; must not be zero")
+    if seeds.within is not None and seeds.least > seeds.most:
+        told.append(
+            f"study.seeds.least = {seeds.least}: must be at most study.seeds.most, {seeds.most}, or within ends nothing"
+        )
     if not all(seeds.key.split(".")):
         told.append(f"study.seeds.key = {seeds.key!r}: must be a key of the case, such as water.disorder")
     return told

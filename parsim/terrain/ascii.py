@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from parsim.terrain.height_field import HeightField
 if TYPE_CHECKING:
     from pathlib import Path
 
-_NEEDED = ("ncols", "nrows", "cellsize")
+_NEEDED, _COUNTS, _NODATA = ("ncols", "nrows", "cellsize"), ("ncols", "nrows"), "nodata_value"
 
 
 def read(path: Path) -> HeightField:
@@ -40,7 +41,7 @@ def read(path: Path) -> HeightField:
         raise InputError(
             f"{path}: holds {values.size} heights; ncols = {columns}, nrows = {rows} need {columns * rows}"
         )
-    values[(values == head.get("nodata_value", -9999.0)) | ~np.isfinite(values)] = np.nan
+    values[(values == head.get(_NODATA, -9999.0)) | ~np.isfinite(values)] = np.nan
     x, y = (
         head[key] + size * (np.arange(number) + (0.5 if key.endswith("corner") else 0.0))
         for key, number in zip(places, (columns, rows), strict=True)
@@ -48,26 +49,13 @@ def read(path: Path) -> HeightField:
     return HeightField(x, y, values.reshape(rows, columns)[::-1].T, (0.5 * size, 0.5 * size))
 
 
-def write(path: Path, field: HeightField) -> None:
-    """Write heights on a grid of square cells."""
-    size = field.x[1] - field.x[0]
-    head = {
-        "ncols": len(field.x),
-        "nrows": len(field.y),
-        "xllcenter": repr(float(field.x[0])),
-        "yllcenter": repr(float(field.y[0])),
-        "cellsize": repr(float(size)),
-        "NODATA_value": -9999,
-    }
-    rows = np.where(np.isnan(field.z), -9999.0, field.z).T[::-1]
-    text = "\n".join(
-        [*(f"{key} {value}" for key, value in head.items()), *(" ".join(map(repr, r.tolist())) for r in rows)]
-    )
-    path.write_text(text + "\n", encoding="utf-8")
-
-
 def _number(path, key, word):
     try:
-        return float(word)
+        value = float(word)
     except ValueError:
         raise InputError(f"{path}: {key} {word}: must be a number") from None
+    if not (math.isfinite(value) or key.lower() == _NODATA):
+        raise InputError(f"{path}: {key} {word}: must be finite")
+    if key.lower() in _COUNTS and not value.is_integer():
+        raise InputError(f"{path}: {key} {word}: must be a whole number")
+    return value

@@ -6,6 +6,7 @@ Numbers fill their 8 columns (16 in cut lines) and then run together: "     1359
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -145,6 +146,8 @@ def _fields(place, key, value, lines):
         raise InputError(f"{place}: {key}: a field of {width} columns is no number: {error}") from None
     if len(numbers) != count * each:
         raise InputError(f"{place}: {key}: holds {len(numbers)} numbers; {count} entries need {count * each}")
+    if not np.isfinite(numbers).all():
+        raise InputError(f"{place}: {key}: holds {next(n for n in numbers if not math.isfinite(n))}; must be finite")
     return np.array(numbers, float).reshape(count, each)
 
 
@@ -170,10 +173,10 @@ def _ordered(path, nodes):
                 f"{path}: sections are out of order: {lower.river_station:g} comes after {upper.river_station:g}; "
                 "river stations must descend, from upstream to downstream"
             )
-        if not upper.length > 0.0:
+        if not 0.0 < upper.length < math.inf:
             raise InputError(
                 f"{path}: section {upper.river_station:g}: the length of its channel to section "
-                f"{lower.river_station:g} is {upper.length:g}; must be greater than 0"
+                f"{lower.river_station:g} is {upper.length:g}; must be greater than 0 and finite"
             )
     if len(nodes) < 2:
         raise InputError(f"{path}: has one cross-section, {nodes[0].river_station:g}; a reach needs two or more")

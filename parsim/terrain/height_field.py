@@ -34,7 +34,7 @@ class HeightField(NamedTuple):
         return np.array([self.x[-1], self.y[-1]]) + self.beyond
 
     def at(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Bilinear heights at points x, y of one shape; NaN beside nodes without data; past the grid as at its rim."""
+        """Bilinear heights at points x, y of one shape; NaN beside nodes without data; past the rim see `_between`."""
         (i, s), (j, t) = _between(self.x, x), _between(self.y, y)
         out = np.zeros(np.broadcast(x, y).shape)
         for di, share in ((0, 1.0 - s), (1, s)):
@@ -46,16 +46,8 @@ class HeightField(NamedTuple):
 
     def on(self, x: np.ndarray, y: np.ndarray, frame: Frame) -> HeightField:
         """The same at the nodes x (nx,), y (ny,), m, of a grid in the frame of a case."""
-        across, along = frame.of_file(*np.meshgrid(x, y, indexing="ij"))
-        return HeightField(x, y, frame.height(self.at(across, along)))
-
-    def crop(self, low: np.ndarray, high: np.ndarray) -> HeightField:
-        """The least part whose nodes are around the rectangle from `low` to `high` (2,)."""
-        parts = []
-        for row, least, most in zip((self.x, self.y), low, high, strict=True):
-            first = max(int(np.searchsorted(row, least, "right")) - 1, 0)
-            parts.append(slice(first, max(int(np.searchsorted(row, most, "left")) + 1, first + 1)))
-        return HeightField(self.x[parts[0]], self.y[parts[1]], self.z[parts[0], parts[1]], self.beyond)
+        places = frame.of_file(*np.meshgrid(x, y, indexing="ij"))
+        return HeightField(x, y, frame.height(self.at(*places)))
 
     def filled(self, way: str) -> tuple[HeightField, str]:
         """The same with a height everywhere, and what was done, in words, empty for nothing.
@@ -81,13 +73,18 @@ class HeightField(NamedTuple):
 
 
 def even(row: np.ndarray) -> bool:
-    """Whether numbers (n,) ascend in even steps, to a thousandth of them."""
-    steps = np.diff(row)
-    return len(row) > 1 and bool(steps.min() > 0.0 and np.ptp(steps) <= 1e-3 * steps.mean())
+    """Whether numbers (n,) that ascend are those of even steps, to a thousandth of one."""
+    if len(row) < 2:
+        return False
+    exact, step = np.linspace(row[0], row[-1], len(row), retstep=True)
+    return bool(np.abs(row - exact).max() <= 1e-3 * step)
 
 
 def _between(row, at):
-    """Node below each place and the share of the way to the next; past the ends the slope of the last cell goes on."""
+    """Node below each place and the share of the way to the next.
+
+    Past the ends the slope of the last cell goes on for half a step, to the edge of a raster's cell, and no further.
+    """
     if len(row) == 1:
         return np.zeros(np.shape(at), int), np.zeros(np.shape(at))
     step = (row[-1] - row[0]) / (len(row) - 1)

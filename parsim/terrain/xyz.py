@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,25 +14,34 @@ from parsim.terrain.triangles import Triangles
 if TYPE_CHECKING:
     from pathlib import Path
 
+_COMMA = re.compile(r"[-+]?\d+(,\d*)?")  # a number whose decimals stand behind a comma, or that a comma ends
 _FULL = 0.5  # share of the nodes of a grid from which points are taken for one with holes
 
 
 def read(path: Path) -> HeightField | Triangles:
-    """The surface through the points of a file; lines before the first numbers are passed over. Raises InputError."""
-    rows, begun = [], False
+    """The surface through the points of a file. Raises InputError.
+
+    Lines before the first numbers are passed over, but that one which names x, y and z says in which columns they are.
+    """
+    rows, begun, columns = [], False, [0, 1, 2]
     for number, line in enumerate(path.read_text(encoding="utf-8-sig").split("\n"), 1):
-        words = line.partition("#")[0].replace(",", " ").replace(";", " ").split()
+        parts, place = line.partition("#")[0].replace(";", " ").split(), f"{path}: line {number}: {line.strip()[:60]}"
+        words = " ".join(parts).replace(",", " ").split()
         if not words:
             continue
         try:
-            rows.append([float(word) for word in words[:3]])
+            rows.append([float(words[at]) for at in columns if at < len(words)])
         except ValueError:
             if begun:
-                raise InputError(f"{path}: line {number}: {line.strip()[:60]}: must be numbers x, y, z") from None
+                raise InputError(f"{place}: must be numbers x, y, z") from None
+            names = [word.strip("\"'").lower() for word in words]
+            columns = [names.index(axis) for axis in "xyz"] if {"x", "y", "z"} <= {*names} else columns
             continue
         begun = True
-        if len(words) < 3:
-            raise InputError(f"{path}: line {number}: {line.strip()[:60]}: must be three numbers x, y, z")
+        if len(rows[-1]) < 3:
+            raise InputError(f"{place}: must be three numbers x, y, z")
+        if len(parts) > 2 and all(map(_COMMA.fullmatch, parts[:3])) and any("," in part[:-1] for part in parts[:3]):
+            raise InputError(f"{place}: must have its decimals behind points, not commas")
     points = np.array(rows).reshape(-1, 3)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 3:

@@ -63,6 +63,9 @@ class BedShape(Ground, Meshed):
         """See `ShapeTable`."""
         if planar:
             yield 'shape.kind = "bed": a 2D case has none'
+        if (least := float(np.prod(np.subtract(self.high, self.low[:2]) / self.resolution))) > _MOST:
+            yield f"shape.resolution = {self.resolution}: makes {least:.3g} heights; at most {_MOST:.3g} nodes"
+            return
         try:
             heights = self.heights
         except InputError as error:
