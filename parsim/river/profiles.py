@@ -24,6 +24,12 @@ def across(values: np.ndarray) -> Profile:
         return Profile(np.nanmean(values, axis=1), *np.nanpercentile(values, (10.0, 50.0, 90.0), axis=1))
 
 
+def mean_of(values: np.ndarray) -> float:
+    """Mean of the values (n,) that are there, NaN of none."""
+    there = values[np.isfinite(values)]
+    return float(there.mean()) if there.size else float("nan")
+
+
 def mean_between(times: np.ndarray, values: np.ndarray, begin: float, end: float) -> np.ndarray:
     """Mean of the values (T, ...) of the times (T,) from begin to end, s, NaN left out; of the nearest if there are
     none."""

@@ -54,7 +54,7 @@ class River:
     def __init__(self, run: Run) -> None:
         case = self.case = parse(run.case)
         self.run, self.measure, self.planar = run, case.measure, case.dimensions == 2
-        self.gravity, self.tilt = -case.gravity[2], case.gravity[0] / -case.gravity[2]
+        self.gravity = -case.gravity[2]
         self.reach = self.measure.reach or (case.box.min[0], case.box.max[0])
         edge = self.measure.grid or 2.0 * case.spacing
         self.columns = columns_of(case.box.min, case.box.max, edge, repeats(case)[:2], self.planar)
@@ -120,9 +120,26 @@ class River:
         """Begin and end, s, of the time before ice changes the level."""
         return self.measure.before or (0.0, self.window)
 
+    def tilt(self, end: float) -> float:
+        """What drives the flow along x over its weight, in the window that ends at a time, s: the slope of a tilted
+        channel, and the force of one that holds a discharge."""
+        driven = self._rows("channel")
+        if not driven:
+            return self.case.gravity[0] / self.gravity
+        slope = profiles.mean_between(driven["time"], driven["energy_slope"], end - self.window, end)
+        return float(slope)
+
+    def _rows(self, name):
+        """A series by its columns, empty where the run has not written it or it has no rows."""
+        series = self.run.series(name) if name in self.run.series_names else {}
+        return series if len(series.get("step", ())) else {}
+
     def rise(self, end: float) -> np.ndarray:
         """How much higher the level is over the width (nx,), m, in the window that ends at a time, s, than before."""
-        earlier = profiles.mean_between(self.fields.time, self.fields.level, *self.before)
+        time, level = self.fields.time, self.fields.level
+        if (told := np.isfinite(level).any(axis=(1, 2))).any():  # the frame of the start has no pressures
+            time, level = time[told], level[told]
+        earlier = profiles.mean_between(time, level, *self.before)
         return profiles.across(self.mean("level", end)).mean - profiles.across(earlier).mean
 
     def heads(self, end: float) -> np.ndarray:
@@ -151,9 +168,10 @@ class River:
         along, here, between = self.along(end), self.within, self.measure.head_loss
         x, heads = along["x"], along["head"]
         names = ("rise", "velocity", "concentration", "solid_thickness", "jam_thickness", "ice_speed")
-        found = {"energy_slope": profiles.energy_slope(x[here], heads[here], self.tilt)}
-        found["head_loss"] = profiles.head_loss(x, heads, between, self.tilt) if between else float("nan")
-        return found | {name: float(profiles.across(along[name][here][None]).mean[0]) for name in names}
+        tilt = self.tilt(end)
+        found = {"energy_slope": profiles.energy_slope(x[here], heads[here], tilt)}
+        found["head_loss"] = profiles.head_loss(x, heads, between, tilt) if between else float("nan")
+        return found | {name: profiles.mean_of(along[name][here]) for name in names}
 
     @cached_property
     def tracks(self) -> Tracks:
@@ -186,8 +204,8 @@ class River:
 
     def peaks(self, body: str, kind: str, part: str) -> Peaks | None:
         """What acted on a body, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""
-        series: dict[str, Any] = self.run.series("peaks") if "peaks" in self.run.series_names else {}
-        here = (series["body"] == body) & (series["kind"] == kind) if series and len(series["step"]) else np.zeros(0)
+        series: dict[str, Any] = self._rows("peaks")
+        here = (series["body"] == body) & (series["kind"] == kind) if series else np.zeros(0, bool)
         if not here.any():
             return None
         sensor = series["sensor"][here][0]  # another one tells the same
