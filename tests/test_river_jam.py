@@ -84,6 +84,13 @@ def test_ice_that_leaves_the_reach_empty_for_a_moment_only_interrupts_a_jam():
     assert first.lasts == "held" and first.end == pytest.approx(50.0, abs=0.2)
 
 
+def test_a_jam_that_holds_is_told_rather_than_one_before_that_let_go():
+    found = jam(TIMES, *stood((10.0, 17.0), (30.0, 70.0), (80.0, 99.0)), 0.1, 0.5, 5.0)
+    assert found.lasts == "held" and (found.begin, found.end) == pytest.approx((30.0, 70.0), abs=0.31)
+    found = jam(TIMES, *stood((10.0, 17.0), (30.0, 38.0)), 0.1, 0.5, 5.0)
+    assert found.lasts == "transient" and found.begin == pytest.approx(10.0, abs=0.31)
+
+
 def test_a_jam_that_lasts_exactly_three_windows_holds():
     through = np.zeros(len(TIMES))
     speed = np.where(TIMES < 15.05, 0.0, 9.0)
@@ -108,6 +115,7 @@ def test_the_place_of_a_jam_reaches_to_the_first_ice_that_moves():
 
 def test_kinds_of_jam():
     assert [kind(1.2, False), kind(1.5, False), kind(1.2, True)] == ["surface", "thickened", "grounded"]
+    assert [kind(math.nan, False), kind(math.nan, True)] == ["unknown", "grounded"]
 
 
 COVER = blocks.Cover(2.0, 4.0)

@@ -11,8 +11,11 @@ import parsim
 from parsim.report.build import Page
 from parsim.report.sections import river as section
 from parsim.river.reader import River
+from parsim.river.verdicts import verdict
 
 SECTIONS = {"reach": [0.5, 3.5], "head_loss": [1.0, 3.0]}
+
+JAM = {"control": {"end": 3.9}, "jam": {"control": "end", "reach": [0.5, 3.5]}}
 
 
 def river(folder):
@@ -60,3 +63,43 @@ def test_a_run_may_lack_bodies_ice_or_piers(tmp_path, bodies):
     seen = river(folder)
     assert words(seen).count("<img") == (1 if not seen.loose.any() else 4)
     assert np.isfinite(seen.along(1.0)["level"]).all()
+
+
+def test_ice_that_settles_is_no_jam(tmp_path):
+    """It stands still for 8 s before 0, where bodies are damped; loads of that time are none on piers either."""
+    folder = fake_river.make_odd(
+        tmp_path / "out", [0.0, 1.0], np.arange(0.0, 30.1, 0.5), measure=JAM, run={"until": 60.0, "settle": 8.0}
+    )
+    floe, still = (1.0, 0.5, 0.36, 1.0, 0.0, 0.0, 0.0), [0.0] * 6
+    moves = [(time, floe[0] + SPEED * max(time, 0.0), SPEED * (time >= 0.0)) for time in np.arange(-8.0, 30.1, 0.5)]
+    rows = [(k, float(t), "floe", float(x), *floe[1:], float(u), *still[1:]) for k, (t, x, u) in enumerate(moves)]
+    fake_river.series(folder, "bodies", rows)
+    pushes = [(k, 0.5 * k - 7.5, "all", "pier", "water", 0.5, *[99.0 if k < 16 else 1.0] * 24) for k in range(20)]
+    fake_river.series(folder, "peaks", pushes)
+    seen = river(folder)
+    assert verdict(seen).jam is None and seen.tracks.time[0] == 0.0
+    assert seen.peaks("pier", "water", "fx").largest.tolist() == [1.0] * 4
+
+
+def test_a_run_that_was_stopped_while_it_settled_has_a_page(tmp_path):
+    folder = fake_river.make_odd(
+        tmp_path / "out", [-8.0], np.arange(-8.0, -7.0, 0.5), measure=JAM, run={"until": 60.0, "settle": 8.0}, first=0
+    )
+    seen = river(folder)
+    assert verdict(seen) is None and section.lines(seen.run) == [] and words(seen)
+
+
+def test_water_that_stands_before_is_no_measure_of_a_jam(tmp_path):
+    rows = np.arange(0.0, 30.1, 0.5)
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], rows, speed=0.0, drift=0.0, measure=JAM))
+    assert verdict(seen).jam is None and "is not known" in section.lines(seen.run)[0]
+
+
+def test_a_jam_that_no_frame_shows_is_told_without_its_place(tmp_path):
+    """In the frames the floe rocks, over the rows it stands."""
+    folder = fake_river.make_odd(tmp_path / "out", [0.0, 10.0], [0.0], measure=JAM)
+    floe = (1.0, 0.5, 0.36, 1.0, *[0.0] * 9)
+    fake_river.series(folder, "bodies", [(k, 0.5 * k, "floe", *floe) for k in range(61)])
+    seen = river(folder)
+    (told,) = section.lines(seen.run)
+    assert verdict(seen).kind == "unknown" and told == "Ice jam (unknown) from 0 to 29.77 s: it held."

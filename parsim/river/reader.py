@@ -38,8 +38,8 @@ class Fields(NamedTuple):
 
 
 class Tracks(NamedTuple):
-    """Of each row and body (T, nb, ...), NaN where one is not there: time (T,), s; x, m, without jumps at sides that
-    repeat; home, m, the same in the box; speed along x, m/s; quaternion (T, nb, 4)."""
+    """Of each row from 0 s on and body (T, nb, ...), NaN where one is not there: time (T,), s; x, m, without jumps at
+    sides that repeat; home, m, the same in the box; speed along x, m/s; quaternion (T, nb, 4)."""
 
     time: np.ndarray
     x: np.ndarray
@@ -175,8 +175,9 @@ class River:
 
     @cached_property
     def tracks(self) -> Tracks:
-        """`Tracks` of all bodies by the series of bodies."""
+        """`Tracks` of all bodies by the series of bodies, without the rows in which they settle."""
         series, names = self.run.series("bodies"), {name: k for k, name in enumerate(self.run.body_names)}
+        series = {name: values[series["time"] >= 0.0] for name, values in series.items()}
         time, row = np.unique(series["time"], return_inverse=True)
         body = np.array([names[name] for name in series["body"].tolist()], int)
         found = np.full((6, len(time), len(names)), np.nan)
@@ -203,9 +204,12 @@ class River:
         return float(np.nanmean(here)) if np.isfinite(here).any() else 0.0
 
     def peaks(self, body: str, kind: str, part: str) -> Peaks | None:
-        """What acted on a body, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""
+        """What acted on a body from 0 s on, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""
         series: dict[str, Any] = self._rows("peaks")
-        here = (series["body"] == body) & (series["kind"] == kind) if series else np.zeros(0, bool)
+        if not series:
+            return None
+        settled = series["time"] - series["span"] >= -1e-9
+        here = (series["body"] == body) & (series["kind"] == kind) & settled
         if not here.any():
             return None
         sensor = series["sensor"][here][0]  # another one tells the same

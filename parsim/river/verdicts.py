@@ -20,8 +20,9 @@ _NEAR = 0.5  # spacings between footprints that count as neighbours, and over th
 
 
 class Verdict(NamedTuple):
-    """A jam, or None; where it stands, head and toe, m; how many floes lie over each other where there are any, and its
-    kind, "none" without a jam; what it was judged by: supply of ice, m3/s, speed of the water, m/s, window, s."""
+    """A jam, or None; where it stands, head and toe, m, NaN where no frame shows it; how many floes lie over each other
+    where there are any, and its kind, "none" without a jam; what it was judged by: supply of ice, m3/s, speed of the
+    water, m/s, window, s."""
 
     jam: Jam | None
     head: float
@@ -36,7 +37,7 @@ class Verdict(NamedTuple):
 def verdict(river: River) -> Verdict | None:
     """Whether ice has jammed; None where the case does not ask, or has no ice."""
     sought, at = river.measure.jam, river.loose
-    if sought is None or not at.any():
+    if sought is None or not at.any() or not len(river.tracks.time):
         return None
     tracks, reach, plane = river.tracks, sought.reach, river.measure.control[sought.control]
     supply = sought.supply or float(river.stored(reach).mean() / (reach[1] - reach[0]) * river.drift)

@@ -31,7 +31,7 @@ def parts(page: Page) -> str:
         return ""
     river, times = river_of(run), run.times("water")
     ends = [float(times[k]) for k in moments(times, asked(run, "profiles", ()))]
-    icy, last = river.loose.any() and columns(run, "bodies") is not None, ends[-1]
+    icy, last = river.loose.any() and columns(run, "bodies") is not None and len(river.tracks.time) > 0, ends[-1]
     found = verdict(river) if icy else None
     told = {"river": tables.profiles_table(river, ends), "reach": tables.reach_table(river, ends)}
     told |= {"ice_balance": tables.balance_table(river)} if icy else {}
@@ -90,11 +90,15 @@ def lines(run: Run) -> list[str]:
 def _jam(found: Verdict | None) -> list[str]:
     if found is None:
         return []
+    if not np.isfinite(found.window):
+        return ["Whether there is a jam is not known: before it no water flows down the reach; see measure.before."]
     if found.jam is None:
         return ["No ice jam."]
+    place = f", {found.head:.4g} to {found.toe:.4g} m" if np.isfinite(found.head) else ""
+    thick = f", {found.layers:.2g} floes thick" if np.isfinite(found.layers) else ""
     return [
-        f"Ice jam ({found.kind}) from {found.jam.begin:.4g} to {found.jam.end:.4g} s, {found.head:.4g} to "
-        f"{found.toe:.4g} m, {found.layers:.2g} floes thick: {_LASTS[found.jam.lasts]}."
+        f"Ice jam ({found.kind}) from {found.jam.begin:.4g} to {found.jam.end:.4g} s{place}{thick}: "
+        f"{_LASTS[found.jam.lasts]}."
     ]
 
 
