@@ -5,13 +5,15 @@ import math
 import fake_river
 import numpy as np
 import pytest
-from fake_river import SPEED
+from fake_river import ICE, PIER, SPEED
+from ground import channel, raster
 
 import parsim
 from parsim.report.build import Page
 from parsim.report.sections import river as section
+from parsim.river.arches import arches, at_pier
 from parsim.river.reader import River
-from parsim.river.verdicts import verdict
+from parsim.river.verdicts import on_the_bed, outlines, pairs, verdict
 
 SECTIONS = {"reach": [0.5, 3.5], "head_loss": [1.0, 3.0]}
 
@@ -57,7 +59,7 @@ def test_a_reach_without_a_column_has_no_means(tmp_path):
     assert all(math.isnan(value) for value in river(folder).reach_means(1.0).values())
 
 
-@pytest.mark.parametrize("bodies", [(), (fake_river.PIER,), (fake_river.ICE,)])
+@pytest.mark.parametrize("bodies", [(), (PIER,), (ICE,)])
 def test_a_run_may_lack_bodies_ice_or_piers(tmp_path, bodies):
     folder = fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], bodies)
     seen = river(folder)
@@ -103,3 +105,32 @@ def test_a_jam_that_no_frame_shows_is_told_without_its_place(tmp_path):
     seen = river(folder)
     (told,) = section.lines(seen.run)
     assert verdict(seen).kind == "unknown" and told == "Ice jam (unknown) from 0 to 29.77 s: it held."
+
+
+def test_a_bed_is_no_pier_and_floes_ground_on_it(tmp_path):
+    """The ground is a parabola across, 0.3 m high at 0.5 m; one floe is 0.04 m over it, the other one 0.2 m."""
+    bed = {"file": str(raster(tmp_path, channel)), "origin": [100.0, 200.5], "datum": 3.7, "resolution": 0.25}
+    low, high = (
+        ICE | {"name": name, "position": [x, 0.5, z]} for name, x, z in (("low", 1.0, 0.43), ("high", 2.0, 0.58))
+    )
+    pier = PIER | {"shape": {"size": [0.2, 0.2, 0.4]}, "position": [3.0, 0.5, 0.7]}
+    folder = fake_river.make_odd(
+        tmp_path / "out", [0.0], [0.0], (pier, low, high), bed=bed, box={"max": [4.0, 1.0, 1.2]},
+        water={"speed": 5.0, "fill": [{"min": [0.0, 0.0, 0.0], "max": [4.0, 1.0, 0.6]}]},
+    )  # fmt: skip
+    seen = river(folder)
+    names = seen.run.body_names
+    assert [names[k] for k in seen.piers] == ["pier"] and pairs(seen, 0) == []
+    assert {names[k] for k in outlines(seen, 0)} == {"pier", "low", "high"}
+    assert [names[k] for k in np.flatnonzero(on_the_bed(seen, 0, (0.0, 4.0)))] == ["low"]
+
+
+def test_only_floes_make_an_arch_and_stand_at_a_pier(tmp_path):
+    """A wall touches both piers, and a floe the first of them."""
+    two = PIER | {"name": "two", "position": [3.0, 0.1, 0.4]}
+    wall = PIER | {"name": "wall", "shape": {"size": [0.2, 0.2, 0.8]}, "position": [3.0, 0.3, 0.4]}
+    floe = ICE | {"position": [3.0 - 0.25, 0.5, 0.36]}
+    measure = {"piers": ["pier", "two"]}
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0], [0.0], (PIER, two, wall, floe), measure=measure))
+    near = pairs(seen, 0)
+    assert at_pier(near, 0) == 1 and at_pier(near, 1) == 0 and arches(near, seen.piers) == []

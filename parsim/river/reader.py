@@ -13,7 +13,7 @@ from parsim.river import ice, profiles, water
 from parsim.river.columns import columns_of
 from parsim.river.piers import Peaks
 from parsim.river.planes import passed, stored
-from parsim.river.raster import chosen, cuts_of
+from parsim.river.raster import cuts_of
 
 if TYPE_CHECKING:
     from parsim.output.reader import Run
@@ -60,6 +60,7 @@ class River:
         self.columns = columns_of(case.box.min, case.box.max, edge, repeats(case)[:2], self.planar)
         self.period = (float(period(case)[0]), float(period(case)[1]))
         self.loose = np.array([not body.fixed for body in case.bodies], bool)
+        self.ground = np.array([body.shape.kind == "bed" for body in case.bodies], bool)
         self.volume = np.array([body.shape.volume for body in case.bodies])
         thick = np.array([2.0 * body.shape.thinnest(self.planar) for body in case.bodies])
         area = self.volume / thick
@@ -74,8 +75,15 @@ class River:
         return [
             k
             for k, body in enumerate(self.case.bodies)
-            if (body.fixed and body.name != cover if named is None else body.name in named)
+            if (body.fixed and not self.ground[k] and body.name != cover if named is None else body.name in named)
         ]
+
+    def floor(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Heights (n,), m, of the floor of the box, or of the ground on it, at places x, y (n,), m."""
+        found = np.full(len(x), float(self.case.box.min[2]))
+        for k in np.flatnonzero(self.ground):
+            found = np.maximum(found, self.case.bodies[k].shape.heights.at(x, y))
+        return found
 
     @property
     def within(self) -> np.ndarray:
@@ -99,7 +107,8 @@ class River:
             nothing, none = np.zeros(self.columns.shape), np.full(self.columns.shape, np.nan)
             return frame["time"], *wet, nothing, nothing, none, none, none, none
         bodies = self.run.bodies(number)
-        cuts = chosen(cuts_of(bodies["points"], bodies["quads"], bodies["body"], self.columns), self.loose)
+        floes = self.loose[bodies["body"]]
+        cuts = cuts_of(bodies["points"], bodies["quads"][floes], bodies["body"][floes], self.columns)
         inner = ice.heights(cuts, self.columns)
         return (
             frame["time"],

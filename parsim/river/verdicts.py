@@ -16,7 +16,7 @@ from parsim.river.reader import middle
 if TYPE_CHECKING:
     from parsim.river.reader import River
 
-_NEAR = 0.5  # spacings between footprints that count as neighbours, and over the bed on which a floe is grounded
+_NEAR = 0.5  # spacings between footprints that count as neighbours, and over the bed on which a floe has grounded
 
 
 class Verdict(NamedTuple):
@@ -60,19 +60,21 @@ def verdict(river: River) -> Verdict | None:
 
 
 def on_the_bed(river: River, frame: int, reach: tuple[float, float]) -> np.ndarray:
-    """Which floes (nb,) with their centre in a reach, m, are within half a spacing of the floor of the box."""
-    low, x = extents(river, frame, 2)[:, 0], river.run.bodies(frame)["position"][:, 0]
-    near = low <= river.case.box.min[2] + _NEAR * river.case.spacing
+    """Which floes (nb,) with their centre in a reach, m, have a corner within half a spacing of the bed."""
+    bodies = river.run.bodies(frame)
+    corners, body = bodies["points"][bodies["quads"].ravel()], np.repeat(bodies["body"], 4)
+    near, x = np.zeros(len(river.loose), bool), bodies["position"][:, 0]
+    near[body[corners[:, 2] - river.floor(*corners[:, :2].T) <= _NEAR * river.case.spacing]] = True
     return near & (x >= reach[0]) & (x <= reach[1]) & river.loose
 
 
-def extents(river: River, frame: int, axis: int) -> np.ndarray:
-    """From where to where along an axis the bodies are in a frame (nb, 2), m; (inf, -inf) where one is not there."""
-    bodies = river.run.bodies(frame)
-    place, body = bodies["points"][bodies["quads"].ravel(), axis], np.repeat(bodies["body"], 4)
+def _lengths(river):
+    """From where to where along x the bodies are in the first frame (nb, 2), m; (inf, -inf) where one is not there."""
+    bodies = river.run.bodies(0)
+    x, body = bodies["points"][bodies["quads"].ravel(), 0], np.repeat(bodies["body"], 4)
     found = np.tile([np.inf, -np.inf], (len(river.loose), 1))
-    np.minimum.at(found[:, 0], body, place)
-    np.maximum.at(found[:, 1], body, place)
+    np.minimum.at(found[:, 0], body, x)
+    np.maximum.at(found[:, 1], body, x)
     return found
 
 
@@ -80,7 +82,7 @@ def blocks(river: River) -> dict[str, Block]:
     """What became of every block by its name; none where the case names no cover."""
     if river.measure.cover is None:
         return {}
-    names, tracks, along = river.run.body_names, river.tracks, extents(river, 0, 0)
+    names, tracks, along = river.run.body_names, river.tracks, _lengths(river)
     cover, found = Cover(*along[names.index(river.measure.cover)].tolist()), {}
     for k in np.flatnonzero(river.loose).tolist():
         there = np.isfinite(tracks.x[:, k])
@@ -93,18 +95,21 @@ def blocks(river: River) -> dict[str, Block]:
 
 
 def outlines(river: River, frame: int) -> dict[int, np.ndarray]:
-    """Convex outlines (k, 2), m, on the plan of the bodies that are there in a frame, by number."""
+    """Convex outlines (k, 2), m, on the plan of the bodies that are there in a frame but for the bed, by number."""
     bodies = river.run.bodies(frame)
     return {
         int(k): outline(bodies["points"][np.unique(bodies["quads"][bodies["body"] == k]), :2])
         for k in np.unique(bodies["body"])
+        if not river.ground[k]
     }
 
 
 def pairs(river: River, frame: int) -> list[tuple[int, int]]:
-    """Numbers of the bodies whose outlines are at most half a spacing apart in a frame; none of a 2D run."""
+    """Numbers of floes and piers whose outlines are at most half a spacing apart in a frame; none of a 2D run."""
     if river.planar:
         return []
-    around = outlines(river, frame)
+    piers = set(river.piers)
+    around = {k: corners for k, corners in outlines(river, frame).items() if river.loose[k] or k in piers}
     keys, near = [*around], neighbours([*around.values()], _NEAR * river.case.spacing, river.period)
-    return [(keys[one], keys[other]) for one, other in near]
+    found = [(keys[one], keys[other]) for one, other in near]
+    return [pair for pair in found if not piers.issuperset(pair)]
