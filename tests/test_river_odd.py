@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from fake_river import ICE, PIER, SPEED
 from ground import channel, raster
+from matplotlib.text import Text
 
 import parsim
+from parsim.report import river as pictures
 from parsim.report.build import Page
 from parsim.report.sections import river as section
 from parsim.river.arches import arches, at_pier
@@ -134,3 +136,40 @@ def test_only_floes_make_an_arch_and_stand_at_a_pier(tmp_path):
     seen = river(fake_river.make_odd(tmp_path / "out", [0.0], [0.0], (PIER, two, wall, floe), measure=measure))
     near = pairs(seen, 0)
     assert at_pier(near, 0) == 1 and at_pier(near, 1) == 0 and arches(near, seen.piers) == []
+
+
+def test_floes_faster_than_the_water_keep_their_colours_apart(tmp_path):
+    rocks = ICE | {"name": "other", "position": [2.0, 0.5, 0.36]}
+    seen = river(
+        fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], (PIER, ICE, rocks), speed=0.0, drift=2.0)
+    )
+    assert pictures.plan(seen, 1.0).axes[0].collections[0].get_clim() == (0.0, 2.0)
+
+
+def test_a_plan_that_all_ice_has_left_has_a_scale(tmp_path, monkeypatch):
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0]))
+    real = seen.run.bodies
+
+    def left(frame):
+        bodies = real(frame)
+        there = bodies["body"] == 0
+        return bodies | {"quads": bodies["quads"][there], "body": bodies["body"][there]}
+
+    monkeypatch.setattr(seen.run, "bodies", left)
+    (picture,) = pictures.plan(seen, 1.0).axes[2].images
+    assert picture.get_clim() == (0.0, pytest.approx(0.16)) and pictures.time_distance(seen) is None
+
+
+def test_ice_that_goes_back_is_in_the_picture_of_the_balance(tmp_path):
+    measure = {"control": {"plane": 0.8}}
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], drift=-SPEED, measure=measure))
+    (axes,) = pictures.balance(seen).axes
+    assert axes.get_ylim()[0] <= seen.passed(0.8)[-1] < 0.0
+
+
+def test_the_legend_of_the_long_section_is_clear_of_its_title(tmp_path):
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0]))
+    drawn = pictures.long_section(seen, 60.0)
+    drawn.draw_without_rendering()
+    (title,) = drawn.findobj(lambda each: isinstance(each, Text) and each.get_text().startswith("mean of"))
+    assert not drawn.axes[0].get_legend().get_window_extent().overlaps(title.get_window_extent())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from parsim.report.curves import ACCENT, FAINT, INK, WATER, figure
+from parsim.report.curves import ACCENT, FAINT, INK, LINES, WATER, figure
 from parsim.river.piers import PERCENTS, WINDOWS, percentiles
 from parsim.river.profiles import across
 from parsim.river.verdicts import outlines
@@ -36,15 +37,16 @@ def plan(river: River, time: float) -> Figure | None:
     speed = np.linalg.norm(bodies["velocity"], axis=1)
     patches = PolyCollection([around[k] for k in floes], cmap="turbo", edgecolors=INK, linewidths=0.4)
     patches.set_array(speed[floes])
-    patches.set_clim(0.0, max(1.2 * river.drift, 1e-12))
+    patches.set_clim(0.0, max([1.2 * river.drift, *speed[floes], 0.0]) or 1.0)
     top.add_collection(patches)
     drawn.colorbar(patches, ax=top, label="speed (m/s)")
+    concentration, jam = (each[river.run.nearest(time)] for each in (river.fields.concentration, river.fields.jam))
     maps = (
-        (middle, "concentration", "concentration", "Blues", 1.0),
-        (bottom, "jam", "jam thickness (m)", "viridis", None),
+        (middle, concentration, "concentration", "Blues", 1.0),
+        (bottom, jam, "jam thickness (m)", "viridis", np.nanmax(jam, initial=river.floe)),
     )
-    for axes, name, label, colours, most in maps:
-        values = np.ma.masked_invalid(getattr(river.fields, name)[river.run.nearest(time)])
+    for axes, found, label, colours, most in maps:
+        values = np.ma.masked_invalid(found)
         extent = (low[0], high[0], low[1], high[1])
         picture = axes.imshow(
             values.T, origin="lower", extent=extent, cmap=colours, norm=Normalize(0.0, most), interpolation="nearest"
@@ -80,7 +82,7 @@ def long_section(river: River, time: float) -> Figure | None:
     top.plot(x, along["head"], color=ACCENT, linewidth=1, linestyle="-.", label="energy head")
     top.set_ylabel("z (m)")
     top.set_ylim(least - 0.05 * (np.nanmax(along["head"]) - least), None)
-    top.set_title(f"mean of the {river.window:.3g} s before t = {time:.3f} s", fontsize=9, loc="left")
+    drawn.suptitle(f"mean of the {river.window:.3g} s before t = {time:.3f} s", fontsize=9, x=0.07, ha="left")
     bottom.fill_between(x, along["velocity_10"], along["velocity_90"], color=WATER, alpha=0.25, linewidth=0)
     bottom.plot(x, along["velocity"], color=WATER, label="water, with 10 to 90 % across")
     bottom.plot(x, along["ice_speed"], color=ACCENT, label="ice")
@@ -153,9 +155,9 @@ def balance(river: River) -> Figure | None:
     axes = axes[0, 0]
     axes.plot(time, river.stored(), color=INK, label="in the box")
     axes.plot(time, river.stored(river.reach), color=FAINT, label="in the reach")
-    for (name, x), style in zip(river.measure.control.items(), ("-", "--", "-.", ":") * 9, strict=False):
+    for (name, x), style in zip(river.measure.control.items(), cycle(LINES), strict=False):
         axes.plot(time, river.passed(x), style, color=ACCENT, label=f"passed {name}")
     axes.set(xlabel="time (s)", ylabel="ice (m3)")
-    axes.set_ylim(0.0, None)
+    axes.set_ylim(min(0.0, *axes.get_ylim()), None)
     axes.legend(fontsize=7, frameon=False, ncols=4)
     return drawn
