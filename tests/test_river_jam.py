@@ -193,8 +193,12 @@ def test_percentiles_of_a_ramp():
     assert piers.percentiles(peaks(np.full(1000, -7.0), 0.001, 5)) == pytest.approx(7.0)
 
 
-def test_forces_scale_with_the_cube_of_lengths():
-    assert piers.scaled(np.array([2.0]), 10.0) == pytest.approx(2000.0)
+def test_rows_do_not_tell_of_means_over_less_than_them():
+    """A hit of 900 N for 2 ms in a row of 50 ms: whether its mean over 10 ms is 180 N or less is not known."""
+    force = np.zeros(2000)
+    force[700:704] = 900.0
+    found = piers.percentiles(peaks(force, 0.0005, 100))
+    assert found[0, 0] == 900.0 and np.isnan(found[1]).all() and found[2, 0] == pytest.approx(18.0)
 
 
 def test_arches_are_chains_from_pier_to_pier():

@@ -173,3 +173,12 @@ def test_the_legend_of_the_long_section_is_clear_of_its_title(tmp_path):
     drawn.draw_without_rendering()
     (title,) = drawn.findobj(lambda each: isinstance(each, Text) and each.get_text().startswith("mean of"))
     assert not drawn.axes[0].get_legend().get_window_extent().overlaps(title.get_window_extent())
+
+
+def test_a_drifting_floe_has_the_porosity_of_the_frames_that_show_it(tmp_path):
+    """It fills the width and three columns, and is there in half the frames of the window: not half empty for that."""
+    floe = ICE | {"shape": {"size": [0.6, 1.0, 0.16]}, "position": [1.3, 0.5, 0.36]}
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 0.9], [0.0, 0.9], (floe,), drift=2.0 / 0.9))
+    along = seen.along(0.9)
+    assert along["solid_thickness"][6] == pytest.approx(0.08)
+    assert along["porosity"][6] == pytest.approx(0.0, abs=1e-9) and np.isfinite(along["porosity"]).sum() == 6

@@ -134,7 +134,7 @@ def pier_forces(river: River) -> Figure | None:
     axes[0, 0].legend(fontsize=7, frameon=False)
     axes[-1, 0].set_xlabel("time (s)")
     axes[-1, 1].set_xticks(range(len(WINDOWS)), [f"{1000 * w:g} ms" for w in WINDOWS])
-    axes[-1, 1].set_xlabel("mean over")
+    axes[-1, 1].set(xlabel="mean over", xlim=(-0.5, len(WINDOWS) - 0.5))
     return drawn
 
 

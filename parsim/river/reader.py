@@ -167,8 +167,9 @@ class River:
         others = {"bed": "bottom", "water_top": "top", "concentration": "concentration", "ice_speed": "speed",
                   "ice_low": "low", "ice_high": "high"}  # fmt: skip
         found |= {name: profiles.across(self.mean(field, end)).mean for name, field in others.items()}
-        solid, thick = self.mean("solid", end), self.mean("jam", end)
-        found["porosity"] = profiles.across(ice.porosity(solid, thick)).mean
+        voids = ice.porosity(self.fields.solid, self.fields.jam)
+        voids = profiles.mean_between(self.fields.time, voids, end - self.window, end)
+        found["porosity"] = profiles.across(voids).mean
         found["layers"] = ice.layers(found["solid_thickness"], self.floe)
         return found | {"rise": self.rise(end), "head": self.heads(end)}
 

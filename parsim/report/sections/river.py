@@ -74,7 +74,8 @@ def parts(page: Page) -> str:
             pier_forces(river),
             "Curves of the forces on piers with their percentiles.",
             "Forces on piers along the flow: means of the rows, and from the least to the largest of all steps. Right: "
-            "maximum (dot), 99.9, 99 and 95 % of the amounts of running means; of 0 ms those of the rows' extremes.",
+            "maximum (dot), 99.9, 99 and 95 % of the amounts of running means; of 0 ms those of the rows' extremes; "
+            "windows shorter than the rows are left out, give output.series.",
         ),
         f"<p>Beside this page: {', '.join(f'{name}.csv' for name in told)}.</p>",
     )
