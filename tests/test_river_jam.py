@@ -145,6 +145,8 @@ def test_a_block_that_still_moves_is_undecided_and_one_that_left_is_known():
     assert blocks.block(np.array([1.5, 1.8]), np.zeros(2), still, 0.4, COVER, 0.5).name == "undecided"
     gone = np.array([1.8, 2.2, 4.5, math.nan]), np.array([0.0, 60.0, 50.0, math.nan]), np.full(4, math.nan)
     assert blocks.block(*gone, 0.4, COVER, 0.5).name == "passed"
+    beyond = blocks.block(np.array([4.5, 5.0]), np.zeros(2), still, 0.4, COVER, 0.5)
+    assert beyond.name == "undecided" and not beyond.critical, "it began downstream of the cover"
     assert blocks.block(np.full(3, math.nan), np.zeros(3), np.zeros(3), 0.4, COVER, 0.5).name == "undecided"
 
 

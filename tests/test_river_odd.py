@@ -182,3 +182,42 @@ def test_a_drifting_floe_has_the_porosity_of_the_frames_that_show_it(tmp_path):
     along = seen.along(0.9)
     assert along["solid_thickness"][6] == pytest.approx(0.08)
     assert along["porosity"][6] == pytest.approx(0.0, abs=1e-9) and np.isfinite(along["porosity"]).sum() == 6
+
+
+def test_ice_that_left_between_two_rows_has_passed_the_planes_before(tmp_path):
+    """Its last row is 0.5 m upstream of a plane at 3.5 m, and the one after has it no more."""
+    faces = {"x_min": "wall", "x_max": "open"}
+    folder = fake_river.make_odd(
+        tmp_path / "out", [0.0, 1.0], [0.0], (ICE,), measure={"control": {"plane": 3.5, "end": 4.0}},
+        box={"max": [4.0, 1.0, 0.8], "faces": faces},
+    )  # fmt: skip
+    place = (0.5, 0.36, 1.0, 0.0, 0.0, 0.0)
+    rows = [(0, 0.0, "floe", 1.0, *place, *[0.0] * 6), (5, 5.0, "floe", 3.0, *place, *[0.0] * 6)]
+    fake_river.series(folder, "bodies", [*rows, (10, 10.0, "floe", *[math.nan] * 13)])
+    fake_river.series(folder, "lost", [(2, 2.0, "water", 17, *[0.0] * 6), (8, 8.0, "body floe", 0, 4.2, *[0.0] * 5)])
+    seen, volume = river(folder), math.prod(fake_river.FLOE)
+    assert seen.passed(3.5) == pytest.approx([0.0, 0.0, volume]) == seen.passed(4.0)
+    assert seen.stored() == pytest.approx([volume, volume, 0.0])
+
+
+def test_a_run_whose_bed_is_gone_has_a_page_that_says_so(tmp_path):
+    folder = fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], measure=JAM)
+    case = folder / "case.toml"
+    case.write_text(
+        case.read_text().replace(
+            "[[bodies]]",
+            """[[bodies]]
+name = "rock"
+shape = {kind = "mesh", file = "gone.stl"}
+density = 2000.0
+material = "ice"
+position = [2.0, 0.5, 0.4]
+fixed = true
+
+[[bodies]]""",
+            1,
+        )
+    )
+    run = parsim.open(folder)
+    told = section.parts(Page(run, vtk=False))
+    assert "gone.stl" in told and "<img" not in told and section.lines(run) == []

@@ -51,7 +51,8 @@ def block(x: np.ndarray, tilt: np.ndarray, speed: np.ndarray, length: float, cov
 
     `water`: speed of the water, m/s. One that has turned over is "under-turned", one whose centre has come UNDER of its
     length under the cover and had not tilted by FLAT till then is "submerged", whatever becomes of either. Any other
-    has "passed", or is "stuck" if it rests under the cover, or "stable" if it rests level at its edge.
+    has "passed", or is "stuck" if it rests under the cover, or "stable" if it rests level at its edge. One that began
+    downstream of the cover is undecided unless it turned over.
     """
     there = np.isfinite(x)
     x, tilt, speed = x[there], tilt[there], speed[there]
@@ -67,7 +68,7 @@ def _name(x, tilt, speed, length, cover, water):
     if under.any() and tilt[: under.argmax() + 1].max() < FLAT:
         return "submerged"
     if x[-1] > cover.end:
-        return "passed"
+        return "passed" if x[0] <= cover.end else "undecided"
     if abs(speed[-1]) > AT_REST * water:
         return "undecided"
     if x[-1] > cover.begin:

@@ -9,10 +9,10 @@ import numpy as np
 
 from parsim.case.model import parse
 from parsim.geometry.faces import period, repeats
-from parsim.river import ice, profiles, water
+from parsim.river import ice, jam, profiles, water
 from parsim.river.columns import columns_of
 from parsim.river.piers import Peaks
-from parsim.river.planes import passed, stored
+from parsim.river.planes import discharge, passed, stored
 from parsim.river.raster import cuts_of
 
 if TYPE_CHECKING:
@@ -199,8 +199,15 @@ class River:
 
     def passed(self, plane: float) -> np.ndarray:
         """Ice that has passed a plane, m, by each row of the tracks (T,), m3."""
-        at = self.loose
-        return passed(self.tracks.x[:, at], self.volume[at], plane, self.period[0])
+        at, x, lost = self.loose, self.tracks.x.copy(), self._rows("lost")
+        for k in np.flatnonzero(np.char.startswith(lost["what"], "body ")) if lost else ():
+            row = np.searchsorted(self.tracks.time, lost["time"][k])
+            x[row : row + 1, int(lost["id"][k])] = lost["x"][k]  # where it left, beyond planes since the row before
+        return passed(x[:, at], self.volume[at], plane, self.period[0])
+
+    def discharge(self, plane: float) -> np.ndarray:
+        """Ice through a plane, m, at each row of the tracks (T,), m3/s: mean over the time that makes a jam."""
+        return discharge(self.tracks.time, self.passed(plane), self.wait)
 
     def stored(self, reach: tuple[float, float] = (-np.inf, np.inf)) -> np.ndarray:
         """Ice in a reach, m, at each row of the tracks (T,), m3; of the whole box if none is named."""
@@ -212,6 +219,11 @@ class River:
         velocity = profiles.mean_between(self.fields.time, self.fields.velocity, *self.before)
         here = velocity[self.within]
         return float(np.nanmean(here)) if np.isfinite(here).any() else 0.0
+
+    @property
+    def wait(self) -> float:
+        """Time, s, over which ice must stand to have jammed; inf without a flow."""
+        return jam.window(middle(self.size[self.loose], self.volume[self.loose]), self.drift)
 
     def peaks(self, body: str, kind: str, part: str) -> Peaks | None:
         """What acted on a body from 0 s on, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""

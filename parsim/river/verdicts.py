@@ -9,9 +9,8 @@ import numpy as np
 from parsim.river import ice, profiles
 from parsim.river.arches import neighbours, outline
 from parsim.river.blocks import Block, Cover, block, tilts, ups
-from parsim.river.jam import Jam, extent, jam, kind, window
+from parsim.river.jam import Jam, extent, jam, kind
 from parsim.river.planes import mean_speed
-from parsim.river.reader import middle
 
 if TYPE_CHECKING:
     from parsim.river.reader import River
@@ -42,7 +41,7 @@ def verdict(river: River) -> Verdict | None:
     tracks, reach, plane = river.tracks, sought.reach, river.measure.control[sought.control]
     supply = sought.supply or float(river.stored(reach).mean() / (reach[1] - reach[0]) * river.drift)
     speed = mean_speed(tracks.home[:, at], tracks.speed[:, at], river.volume[at], reach)
-    wait = window(middle(river.size[at], river.volume[at]), river.drift)
+    wait = river.wait
     by = supply, river.drift, wait
     found = jam(tracks.time, river.passed(plane), speed, supply, river.drift, wait)
     if found is None:

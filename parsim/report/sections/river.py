@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from parsim.errors import InputError
 from parsim.output.frames import write_text
 from parsim.report.measures import asked, columns, moments
 from parsim.report.page import listing, section, table
@@ -29,7 +30,10 @@ def parts(page: Page) -> str:
     run = page.run
     if not run.case.get("measure") or not len(run.times("water")):
         return ""
-    river, times = river_of(run), run.times("water")
+    try:
+        river, times = river_of(run), run.times("water")
+    except InputError as error:  # a file of a body or of the bed is gone, or another one
+        return section("River", listing(error.messages))
     ends = [float(times[k]) for k in moments(times, asked(run, "profiles", ()))]
     icy, last = river.loose.any() and columns(run, "bodies") is not None and len(river.tracks.time) > 0, ends[-1]
     found = verdict(river) if icy else None
@@ -85,7 +89,10 @@ def lines(run: Run) -> list[str]:
     """The jam, for the summary."""
     if not (run.case.get("measure") or {}).get("jam") or columns(run, "bodies") is None:
         return []
-    return _jam(verdict(river_of(run))) if len(run.times("water")) else []
+    try:
+        return _jam(verdict(river_of(run))) if len(run.times("water")) else []
+    except InputError:  # the section tells of it
+        return []
 
 
 def _jam(found: Verdict | None) -> list[str]:
