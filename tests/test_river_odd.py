@@ -13,6 +13,7 @@ import parsim
 from parsim.report import river as pictures
 from parsim.report.build import Page
 from parsim.report.sections import river as section
+from parsim.river import tables
 from parsim.river.arches import arches, at_pier
 from parsim.river.reader import River
 from parsim.river.verdicts import on_the_bed, outlines, pairs, verdict
@@ -221,3 +222,14 @@ fixed = true
     run = parsim.open(folder)
     told = section.parts(Page(run, vtk=False))
     assert "gone.stl" in told and "<img" not in told and section.lines(run) == []
+
+
+def test_a_long_series_is_read_once(tmp_path, monkeypatch):
+    """Each pier has twelve tables of the series of peaks, which is the longest of all."""
+    folder = fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0])
+    fake_river.series(
+        folder, "peaks", [(1, 0.5, "all", "pier", kind, 0.5, *[1.0] * 24) for kind in ("water", "contact")]
+    )
+    seen, real, read = river(folder), parsim.open(folder).series, []
+    monkeypatch.setattr(seen.run, "series", lambda name: read.append(name) or real(name))
+    assert tables.piers_table(seen).count("\n") == 2 + 2 * 6 * 3 and read == ["peaks"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -67,6 +67,7 @@ class River:
         self.size = area if self.planar else np.sqrt(4.0 / np.pi * area)
         self.floe = middle(thick[self.loose], self.volume[self.loose])
         self.window = water.window(case.depth, self.gravity)
+        self._read: dict[str, dict[str, np.ndarray]] = {}
 
     @property
     def piers(self) -> list[int]:
@@ -140,8 +141,10 @@ class River:
 
     def _rows(self, name):
         """A series by its columns, empty where the run has not written it or it has no rows."""
-        series = self.run.series(name) if name in self.run.series_names else {}
-        return series if len(series.get("step", ())) else {}
+        if name not in self._read:
+            series = self.run.series(name) if name in self.run.series_names else {}
+            self._read[name] = series if len(series.get("step", ())) else {}
+        return self._read[name]
 
     def rise(self, end: float) -> np.ndarray:
         """How much higher the level is over the width (nx,), m, in the window that ends at a time, s, than before."""
@@ -227,7 +230,7 @@ class River:
 
     def peaks(self, body: str, kind: str, part: str) -> Peaks | None:
         """What acted on a body from 0 s on, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""
-        series: dict[str, Any] = self._rows("peaks")
+        series = self._rows("peaks")
         if not series:
             return None
         settled = series["time"] - series["span"] >= -1e-9
