@@ -233,3 +233,28 @@ def test_a_long_series_is_read_once(tmp_path, monkeypatch):
     seen, real, read = river(folder), parsim.open(folder).series, []
     monkeypatch.setattr(seen.run, "series", lambda name: read.append(name) or real(name))
     assert tables.piers_table(seen).count("\n") == 2 + 2 * 6 * 3 and read == ["peaks"]
+
+
+def test_floes_of_any_shape_have_their_size_in_plan(tmp_path):
+    ball, disc = (ICE | {"name": kind, "shape": {"kind": kind, "diameter": 0.3} | more, "position": [x, 0.5, 0.36]}
+                  for kind, more, x in (("sphere", {}, 1.0), ("cylinder", {"height": 0.16}, 2.0)))  # fmt: skip
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0], [0.0], (ball, disc)))
+    assert seen.size == pytest.approx(0.3)
+
+
+def test_ice_of_one_column_is_in_the_long_section(tmp_path):
+    floe = ICE | {"shape": {"size": [0.18, 0.3, 0.16]}, "position": [1.1, 0.5, 0.36]}
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], (floe,), drift=0.0))
+    top, bottom = pictures.long_section(seen, 1.0).axes
+    (ice,) = (bar for bar in top.patches if np.isfinite(bar.get_height()))
+    assert (ice.get_x(), ice.get_width(), ice.get_y()) == pytest.approx((1.0, 0.2, 0.28 + 0.05 * 0.16))
+    assert {line.get_label(): line.get_marker() for line in bottom.lines}["ice"] == "."
+
+
+def test_a_floe_over_a_side_that_repeats_is_on_both_sides_of_the_plan(tmp_path):
+    floe = ICE | {"position": [0.3, 0.5, 0.36]}
+    folder = fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], (floe,), drift=-0.3)
+    shown = pictures.plan(river(folder), 1.0).axes[0].collections[0]
+    reach = [(path.vertices[:, 0].min(), path.vertices[:, 0].max()) for path in shown.get_paths()]
+    assert sorted(reach)[1:] == [pytest.approx((-0.15, 0.15)), pytest.approx((3.85, 4.15))]
+    assert len(shown.get_array()) == len(reach) == 3

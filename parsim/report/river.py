@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import cycle
+from itertools import cycle, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,8 +35,10 @@ def plan(river: River, time: float) -> Figure | None:
     bodies, around = river.run.bodies(frame), outlines(river, frame)
     floes = [k for k in around if river.loose[k]]
     speed = np.linalg.norm(bodies["velocity"], axis=1)
-    patches = PolyCollection([around[k] for k in floes], cmap="turbo", edgecolors=INK, linewidths=0.4)
-    patches.set_array(speed[floes])
+    shifts = [(a * river.case.box.size[0], b * river.case.box.size[1]) for a, b in _images(river)]
+    drawn_floes = [around[k] + shift for shift in shifts for k in floes]  # at sides that repeat, on both
+    patches = PolyCollection(drawn_floes, cmap="turbo", edgecolors=INK, linewidths=0.4)
+    patches.set_array(np.tile(speed[floes], len(shifts)))
     patches.set_clim(0.0, max([1.2 * river.drift, *speed[floes], 0.0]) or 1.0)
     top.add_collection(patches)
     drawn.colorbar(patches, ax=top, label="speed (m/s)")
@@ -62,6 +64,12 @@ def plan(river: River, time: float) -> Figure | None:
     return drawn
 
 
+def _images(river):
+    """Where a plan that repeats is seen: (0, 0) and what is beside it, in lengths and widths of the box."""
+    each = [(0, -1, 1) if np.isfinite(period) else (0,) for period in river.period]
+    return [*product(*each)]
+
+
 def long_section(river: River, time: float) -> Figure | None:
     """Bed, piezometric level, ice and velocities along x, of the window that ends at a time, s."""
     along = river.along(time)
@@ -74,7 +82,8 @@ def long_section(river: River, time: float) -> Figure | None:
     least = np.nanmin(bed)
     top.fill_between(x, least - 0.05 * (np.nanmax(along["level_90"]) - least), bed, color=BED, linewidth=0)
     top.fill_between(x, bed, np.fmin(along["water_top"], along["level"]), color=WATER, alpha=0.2, linewidth=0)
-    top.fill_between(x, along["ice_low"], along["ice_high"], color=ICE, linewidth=0, label="ice, its inner 90 %")
+    low, high, width = along["ice_low"], along["ice_high"], river.columns.step[0]
+    top.bar(x, high - low, width, low, color=ICE, linewidth=0, label="ice, its inner 90 %")
     top.fill_between(x, along["level_10"], along["level_90"], color=WATER, alpha=0.35, linewidth=0)
     top.plot(x, along["level"], color=WATER, label="piezometric level, with 10 to 90 % across")
     if np.isfinite(along["rise"]).any():
@@ -85,7 +94,7 @@ def long_section(river: River, time: float) -> Figure | None:
     drawn.suptitle(f"mean of the {river.window:.3g} s before t = {time:.3f} s", fontsize=9, x=0.07, ha="left")
     bottom.fill_between(x, along["velocity_10"], along["velocity_90"], color=WATER, alpha=0.25, linewidth=0)
     bottom.plot(x, along["velocity"], color=WATER, label="water, with 10 to 90 % across")
-    bottom.plot(x, along["ice_speed"], color=ACCENT, label="ice")
+    bottom.plot(x, along["ice_speed"], color=ACCENT, marker=".", markersize=3, label="ice")
     bottom.set(ylabel="velocity (m/s)", xlabel="x (m)", xlim=(river.case.box.min[0], river.case.box.max[0]))
     bottom.set_ylim(min(0.0, *bottom.get_ylim()), None)
     for each in (top, bottom):

@@ -63,8 +63,7 @@ class River:
         self.ground = np.array([body.shape.kind == "bed" for body in case.bodies], bool)
         self.volume = np.array([body.shape.volume for body in case.bodies])
         thick = np.array([2.0 * body.shape.thinnest(self.planar) for body in case.bodies])
-        area = self.volume / thick
-        self.size = area if self.planar else np.sqrt(4.0 / np.pi * area)
+        self.size = _sizes(self.volume, thick, self.planar)
         self.floe = middle(thick[self.loose], self.volume[self.loose])
         self.window = water.window(case.depth, self.gravity)
         self._read: dict[str, dict[str, np.ndarray]] = {}
@@ -247,6 +246,13 @@ class River:
 def river_of(run: Run) -> River:
     """The `River` of a run, made once for all that ask in turn."""
     return River(run)
+
+
+def _sizes(volume, thick, planar):
+    """Diameters of the discs (2D: lengths) as large in plan as bodies (n,), m, by volume, m3, and thickness, m; no body
+    is less in plan than the ball in it that is as thick."""
+    area = volume / thick
+    return np.maximum(area if planar else np.sqrt(4.0 / np.pi * area), thick)
 
 
 def middle(values: np.ndarray, weight: np.ndarray) -> float:
