@@ -8,7 +8,7 @@ from river_scenes import box, cylinder, sphere, still, surfaces
 
 from parsim.river import ice
 from parsim.river.columns import columns_of, means
-from parsim.river.profiles import across, energy_slope, head, head_loss, mean_between
+from parsim.river.profiles import across, energy_slope, head, head_loss, mean_between, through
 from parsim.river.raster import cuts_of
 from parsim.river.water import water_of, window
 
@@ -183,6 +183,13 @@ def test_heads_fall_by_what_friction_takes():
     assert head_loss(x, step, (2.0, 7.0)) == pytest.approx(0.02)
     nothing = np.full(100, np.nan)
     assert math.isnan(head_loss(x, nothing, (2.0, 7.0))) and math.isnan(energy_slope(x, nothing))
+
+
+def test_the_velocity_of_a_section_is_its_discharge_over_its_area():
+    """A channel with a slow bank a quarter as deep as its middle."""
+    velocity, depth = np.array([[0.2, 1.0, np.nan], [np.nan] * 3]), np.array([[0.5, 2.0, np.nan], [np.nan] * 3])
+    found = through(velocity, depth)
+    assert found[0] == pytest.approx((0.2 * 0.5 + 2.0) / 2.5) and math.isnan(found[1])
 
 
 def test_the_window_of_levels_is_five_times_that_of_a_depth():

@@ -258,3 +258,16 @@ def test_a_floe_over_a_side_that_repeats_is_on_both_sides_of_the_plan(tmp_path):
     reach = [(path.vertices[:, 0].min(), path.vertices[:, 0].max()) for path in shown.get_paths()]
     assert sorted(reach)[1:] == [pytest.approx((-0.15, 0.15)), pytest.approx((3.85, 4.15))]
     assert len(shown.get_array()) == len(reach) == 3
+
+
+def test_heads_take_the_velocity_of_the_section(tmp_path):
+    """The depth of one half of the width is a quarter of that of the other, and its water slower."""
+    seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0]))
+    half = np.arange(seen.columns.shape[1]) < 2
+    seen.fields = seen.fields._replace(
+        velocity=np.where(half, 0.2, 1.0) + 0.0 * seen.fields.velocity,
+        top=np.where(half, 0.1, 0.4) + 0.0 * seen.fields.top,
+    )
+    assert seen.columns.shape[1] == 5
+    flow, area = 2 * 0.2 * 0.1 + 3 * 0.4, 2 * 0.1 + 3 * 0.4
+    assert seen.heads(1.0) == pytest.approx(0.4 + (flow / area) ** 2 / 19.62)

@@ -155,8 +155,9 @@ class River:
 
     def heads(self, end: float) -> np.ndarray:
         """Energy heads (nx,), m, in the window that ends at a time, s."""
-        level, velocity = (profiles.across(self.mean(name, end)).mean for name in ("level", "velocity"))
-        return profiles.head(level, velocity, self.gravity)
+        level, velocity, top, bottom = (self.mean(name, end) for name in ("level", "velocity", "top", "bottom"))
+        velocity = profiles.through(velocity, top - bottom)
+        return profiles.head(profiles.across(level).mean, velocity, self.gravity)
 
     def along(self, end: float) -> dict[str, np.ndarray]:
         """Profiles along x in the window that ends at a time, s: {name: values (nx,)}."""
