@@ -10,6 +10,7 @@ from ground import channel, raster
 from matplotlib.text import Text
 
 import parsim
+from parsim.errors import InputError
 from parsim.report import river as pictures
 from parsim.report.build import Page
 from parsim.report.sections import river as section
@@ -17,6 +18,7 @@ from parsim.river import tables
 from parsim.river.arches import arches, at_pier
 from parsim.river.reader import River
 from parsim.river.verdicts import on_the_bed, outlines, pairs, verdict
+from parsim.study.outcomes import jam_forms
 
 SECTIONS = {"reach": [0.5, 3.5], "head_loss": [1.0, 3.0]}
 
@@ -57,9 +59,12 @@ def test_frames_far_apart_have_a_level_before(tmp_path):
     assert seen.rise(10.0) == pytest.approx(0.0, abs=1e-12) and seen.drift == pytest.approx(SPEED)
 
 
-def test_a_reach_without_a_column_has_no_means(tmp_path):
+def test_a_reach_shorter_than_a_column_is_that_column(tmp_path):
     folder = fake_river.make_odd(tmp_path / "out", [0.0, 1.0], [0.0, 1.0], measure={"reach": [1.01, 1.02]})
-    assert all(math.isnan(value) for value in river(folder).reach_means(1.0).values())
+    seen = river(folder)
+    means = seen.reach_means(1.0)
+    assert (means["velocity"], means["rise"], seen.drift) == pytest.approx((SPEED, 0.0, SPEED))
+    assert math.isnan(means["energy_slope"]) and math.isnan(means["head_loss"]) and seen.within.sum() == 1
 
 
 @pytest.mark.parametrize("bodies", [(), (PIER,), (ICE,)])
@@ -98,6 +103,8 @@ def test_water_that_stands_before_is_no_measure_of_a_jam(tmp_path):
     rows = np.arange(0.0, 30.1, 0.5)
     seen = river(fake_river.make_odd(tmp_path / "out", [0.0, 1.0], rows, speed=0.0, drift=0.0, measure=JAM))
     assert verdict(seen).jam is None and "is not known" in section.lines(seen.run)[0]
+    with pytest.raises(InputError, match="no water flows down the reach"):
+        jam_forms(seen.run)
 
 
 def test_a_jam_that_no_frame_shows_is_told_without_its_place(tmp_path):

@@ -87,8 +87,11 @@ class River:
 
     @property
     def within(self) -> np.ndarray:
-        """Which columns along x are in the reach: (nx,) bool."""
-        return (self.columns.x >= self.reach[0]) & (self.columns.x <= self.reach[1])
+        """Which columns along x have their middle in the reach, one at least: (nx,) bool."""
+        x, (begin, end) = self.columns.x, self.reach
+        here = (x >= begin) & (x <= end)
+        here[np.abs(x - 0.5 * (begin + end)).argmin()] = True
+        return here
 
     @cached_property
     def fields(self) -> Fields:
