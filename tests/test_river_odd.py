@@ -17,7 +17,7 @@ from parsim.report.sections import river as section
 from parsim.river import tables
 from parsim.river.arches import arches, at_pier
 from parsim.river.reader import River
-from parsim.river.verdicts import on_the_bed, outlines, pairs, verdict
+from parsim.river.verdicts import blocks, on_the_bed, outlines, pairs, verdict
 from parsim.study.outcomes import jam_forms
 
 SECTIONS = {"reach": [0.5, 3.5], "head_loss": [1.0, 3.0]}
@@ -278,3 +278,19 @@ def test_heads_take_the_velocity_of_the_section(tmp_path):
     assert seen.columns.shape[1] == 5
     flow, area = 2 * 0.2 * 0.1 + 3 * 0.4, 2 * 0.1 + 3 * 0.4
     assert seen.heads(1.0) == pytest.approx(0.4 + (flow / area) ** 2 / 19.62)
+
+
+def test_a_block_that_comes_in_later_is_known_by_its_shape(tmp_path, monkeypatch):
+    """It is in no row before 2 s, and rests at the cover from 4 s on; another one never comes."""
+    lid = ICE | {"name": "lid", "position": [3.0, 0.5, 0.36], "fixed": True}
+    later = ICE | {"name": "later", "position": [2.0, 0.5, 0.36]}
+    folder = fake_river.make_odd(tmp_path / "out", [0.0], [0.0], (lid, ICE, later), measure={"cover": "lid"})
+    none, turn = [math.nan] * 13, (1.0, *[0.0] * 3)
+    rows = [(k, float(k), "lid", 3.0, 0.5, 0.36, *turn, *[0.0] * 6) for k in range(9)]
+    rows += [(k, float(k), name, *none) for k in range(9) for name in ("floe", "later") if k < 2 or name == "later"]
+    rows += [(k, float(k), "floe", min(1.7 + 0.5 * (k - 2), 2.69), 0.5, 0.36, *turn, *[0.0] * 6) for k in range(2, 9)]
+    fake_river.series(folder, "bodies", rows)
+    seen, real = river(folder), parsim.open(folder).bodies(0)
+    lids = real["body"] == 0
+    monkeypatch.setattr(seen.run, "bodies", lambda _: real | {"quads": real["quads"][lids], "body": real["body"][lids]})
+    assert {name: each.name for name, each in blocks(seen).items()} == {"floe": "stable", "later": "undecided"}

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from parsim.geometry.rotation import matrices
+
 LEVEL, FLAT, OVER = 15.0, 45.0, 90.0  # degrees: stable below, submerged flat below, under-turned from
 UNDER = 0.25  # of its length, that the centre of a submerged block is under the cover
 AT_REST = 0.05  # of the water's speed
@@ -35,15 +37,8 @@ def tilts(up: np.ndarray) -> np.ndarray:
 
 def ups(quaternion: np.ndarray) -> np.ndarray:
     """The direction (T, 3) that is up in the first row and turns with a body, from its quaternions (T, 4)."""
-    w, x, y, z = quaternion.T
-    rows = np.stack(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )
-    return np.einsum("ijt,j->ti", rows, rows[2, :, 0])
+    turns = matrices(np.ascontiguousarray(quaternion))
+    return turns @ turns[0, 2]
 
 
 def block(x: np.ndarray, tilt: np.ndarray, speed: np.ndarray, length: float, cover: Cover, water: float) -> Block:

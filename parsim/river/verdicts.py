@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from parsim.geometry.rotation import matrices
 from parsim.river import ice, profiles
 from parsim.river.arches import neighbours, outline
 from parsim.river.blocks import Block, Cover, block, tilts, ups
@@ -67,30 +68,29 @@ def on_the_bed(river: River, frame: int, reach: tuple[float, float]) -> np.ndarr
     return near & (x >= reach[0]) & (x <= reach[1]) & river.loose
 
 
-def _lengths(river):
-    """From where to where along x the bodies are in the first frame (nb, 2), m; (inf, -inf) where one is not there."""
-    bodies = river.run.bodies(0)
-    x, body = bodies["points"][bodies["quads"].ravel(), 0], np.repeat(bodies["body"], 4)
-    found = np.tile([np.inf, -np.inf], (len(river.loose), 1))
-    np.minimum.at(found[:, 0], body, x)
-    np.maximum.at(found[:, 1], body, x)
-    return found
-
-
 def blocks(river: River) -> dict[str, Block]:
     """What became of every block by its name; none where the case names no cover."""
-    if river.measure.cover is None:
+    if river.measure.cover is None or not len(river.tracks.time):
         return {}
-    names, tracks, along = river.run.body_names, river.tracks, _lengths(river)
-    cover, found = Cover(*along[names.index(river.measure.cover)].tolist()), {}
+    names, tracks, found = river.run.body_names, river.tracks, {}
+    lid = names.index(river.measure.cover)
+    cover = Cover(*(tracks.x[0, lid] + end for end in _ends(river, lid, 0)))
     for k in np.flatnonzero(river.loose).tolist():
-        there = np.isfinite(tracks.x[:, k])
-        tilt = np.full(len(tracks.time), np.nan)
-        if there.any():
+        tilt, length = np.full(len(tracks.time), np.nan), np.nan
+        there = np.flatnonzero(np.isfinite(tracks.x[:, k]))
+        if len(there):
             tilt[there] = tilts(ups(tracks.quaternion[there, k]))
-        length = float(along[k, 1] - along[k, 0])
+            low, high = _ends(river, k, there[0])
+            length = high - low
         found[names[k]] = block(tracks.x[:, k], tilt, tracks.speed[:, k], length, cover, river.drift)
     return found
+
+
+def _ends(river, body, row):
+    """Where a body begins and ends along x from its centre in a row of the tracks, m."""
+    (turn,) = matrices(river.tracks.quaternion[row, body].copy()[None])
+    shape = river.case.bodies[body].shape
+    return -float(shape.reach(-turn[0])), float(shape.reach(turn[0]))
 
 
 def outlines(river: River, frame: int) -> dict[int, np.ndarray]:
