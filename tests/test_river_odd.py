@@ -255,6 +255,7 @@ def test_ice_of_one_column_is_in_the_long_section(tmp_path):
     top, bottom = pictures.long_section(seen, 1.0).axes
     (ice,) = (bar for bar in top.patches if np.isfinite(bar.get_height()))
     assert (ice.get_x(), ice.get_width(), ice.get_y()) == pytest.approx((1.0, 0.2, 0.28 + 0.05 * 0.16))
+    assert ice.get_facecolor()[3] == pytest.approx(0.2 + 0.8 * seen.along(1.0)["concentration"][5])
     assert {line.get_label(): line.get_marker() for line in bottom.lines}["ice"] == "."
 
 

@@ -83,7 +83,9 @@ def long_section(river: River, time: float) -> Figure | None:
     top.fill_between(x, least - 0.05 * (np.nanmax(along["level_90"]) - least), bed, color=BED, linewidth=0)
     top.fill_between(x, bed, np.fmin(along["water_top"], along["level"]), color=WATER, alpha=0.2, linewidth=0)
     low, high, width = along["ice_low"], along["ice_high"], river.columns.step[0]
-    top.bar(x, high - low, width, low, color=ICE, linewidth=0, label="ice, its inner 90 %")
+    shades = [(ICE, 0.2 + 0.8 * share) for share in np.clip(along["concentration"], 0.0, 1.0)]
+    top.bar(x, high - low, width, low, color=shades, linewidth=0)
+    top.fill_between([], [], color=ICE, linewidth=0, label="ice, its inner 90 %, paler where it covers less")
     top.fill_between(x, along["level_10"], along["level_90"], color=WATER, alpha=0.35, linewidth=0)
     top.plot(x, along["level"], color=WATER, label="piezometric level, with 10 to 90 % across")
     if np.isfinite(along["rise"]).any():
@@ -98,7 +100,9 @@ def long_section(river: River, time: float) -> Figure | None:
     bottom.set(ylabel="velocity (m/s)", xlabel="x (m)", xlim=(river.case.box.min[0], river.case.box.max[0]))
     bottom.set_ylim(min(0.0, *bottom.get_ylim()), None)
     for each in (top, bottom):
-        each.legend(fontsize=7, frameon=False, ncols=4, loc="lower right", bbox_to_anchor=(1.0, 0.99))
+        each.legend(
+            fontsize=7, frameon=False, ncols=4, columnspacing=1.0, loc="lower right", bbox_to_anchor=(1.0, 0.99)
+        )
     return drawn
 
 
