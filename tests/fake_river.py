@@ -52,8 +52,8 @@ def places(time):
     return np.array(found), np.array(speeds)
 
 
-def write(folder, case, moments, rows, pose, water):
-    """A whole folder: frames at the moments, s, and rows of bodies at these times, s.
+def write(folder, case, moments, rows, pose, water, first=1):
+    """A whole folder: frames at the moments, s, numbered by steps, and rows of bodies at these times, s.
 
     pose(time): position, quaternion and velocity (nb, 3 or 4) of all bodies; water(time): a frame of it.
     """
@@ -61,21 +61,24 @@ def write(folder, case, moments, rows, pose, water):
     (folder / "series").mkdir(parents=True)
     (folder / "case.toml").write_text(case.to_toml())
     entries = {"water": [], "bodies": []}
-    for number, time in enumerate(moments):
+    for number, time in enumerate(moments, first):
         names = {kind: f"frames/{kind}_{number:06d}.vtkhdf" for kind in entries}
         frame = water(time)
         points, count = frame.pop("position"), len(frame["class"])
         fields = {"id": np.arange(count), **frame, "density_ratio": np.ones(count)}
-        frames.write_water(folder / names["water"], points, fields, time, 1 + number)
+        frames.write_water(folder / names["water"], points, fields, time, number)
+        entries["water"].append((names["water"], float(time)))
+        if not case.bodies:
+            continue
         place, quaternion, velocity = pose(time)
         place[:, 0] %= case.box.max[0]  # what is seen is in the box; in the series it goes on
         turned = [(body.shape, at, q) for body, at, q in zip(case.bodies, place, quaternion, strict=True)]
         fields = {"position": place, "quaternion": quaternion, "velocity": velocity, "spin": 0.0 * velocity}
-        frames.write_bodies(folder / names["bodies"], *surfaces(*turned), fields, time, 1 + number)
-        for kind, each in entries.items():
-            each.append((names[kind], float(time)))
+        frames.write_bodies(folder / names["bodies"], *surfaces(*turned), fields, time, number)
+        entries["bodies"].append((names["bodies"], float(time)))
     for kind, each in entries.items():
-        frames.write_index(folder / f"{kind}.vtkhdf.series", each)
+        if each:
+            frames.write_index(folder / f"{kind}.vtkhdf.series", each)
     table = Table(folder / "series" / "bodies.csv", TABLES["bodies"])
     for step, time in enumerate(rows):
         for body, *values in zip(case.bodies, *pose(time), strict=True):
@@ -145,3 +148,36 @@ def make_cover(folder):
         return {name: values[row] for name, values in frame.items()}
 
     return write(folder, case, np.arange(0.0, 8.1, 1.0), np.arange(0.0, 8.1, 0.1), pose, water)
+
+
+PIER = {"name": "pier", "shape": {"size": [0.2, 0.2, 0.8]}, "density": 2000.0, "material": "ice",
+        "position": [3.0, 0.5, 0.4], "fixed": True}  # fmt: skip
+ICE = {"name": "floe", "shape": {"size": FLOE}, "density": 900.0, "material": "ice", "position": [1.0, 0.5, 0.36]}
+
+
+def make_odd(folder, moments, rows, bodies=(PIER, ICE), speed=SPEED, drift=SPEED, first=1, **changes):
+    """A channel of 4 by 1 m whose free bodies drift from where they are at 0 s on, as other cases want it."""
+    case = parse({
+        "title": "An odd river", "dimensions": 3, "spacing": 0.1, "materials": MATERIAL, "bodies": [*bodies],
+        "box": {"max": [4.0, 1.0, 0.8], "faces": {"x_min": "periodic", "x_max": "periodic"}},
+        "water": {"speed": 5.0, "fill": [{"min": [0.0, 0.0, 0.0], "max": [4.0, 1.0, DEPTH]}]},
+        "run": {"until": 60.0}, "measure": {},
+    } | changes)  # fmt: skip
+
+    def pose(time):
+        place = np.array([body.position for body in case.bodies])
+        velocity = np.array([[0.0 if body.fixed else drift, 0.0, 0.0] for body in case.bodies])
+        return place + velocity * time, np.tile([1.0, 0.0, 0.0, 0.0], (len(place), 1)), velocity
+
+    def water(_):
+        return still(0.1, (0.0, 0.0, 0.0), (4.0, 1.0, DEPTH), speed=speed)
+
+    return write(folder, case, moments, rows, pose, water, first)
+
+
+def series(folder, name, rows):
+    """One more series, rows of values after step and time; or other ones in place of those there are."""
+    table = Table(folder / "series" / f"{name}.csv", TABLES[name])
+    for row in rows:
+        table.row(*row)
+    table.close()

@@ -8,8 +8,8 @@ from river_scenes import box, cylinder, sphere, still, surfaces
 
 from parsim.river import ice
 from parsim.river.columns import columns_of, means
-from parsim.river.profiles import across, energy_slope, head, head_loss, mean_between
-from parsim.river.raster import chosen, cuts_of
+from parsim.river.profiles import across, energy_slope, head, head_loss, mean_between, through
+from parsim.river.raster import cuts_of
 from parsim.river.water import water_of, window
 
 PLAN = columns_of((0.0, 0.0, 0.0), (4.0, 2.0, 1.0), 0.5)
@@ -97,8 +97,6 @@ def test_the_speed_of_ice_is_that_of_its_volume():
     cuts = seen((box(0.5, 0.5, 0.3), (1.25, 0.75, 0.3)), (box(0.5, 0.5, 0.1), (1.25, 0.75, 0.6)))
     found = ice.speed(cuts, np.array([1.0, 3.0]), PLAN)
     assert found[2, 1] == pytest.approx(1.5) and np.isnan(found).sum() == found.size - 1
-    one = chosen(cuts, np.array([False, True]))
-    assert ice.speed(one, np.array([1.0, 3.0]), PLAN)[2, 1] == pytest.approx(3.0)
 
 
 def test_a_floe_at_a_side_that_repeats_is_on_both_sides_of_the_plan():
@@ -185,6 +183,13 @@ def test_heads_fall_by_what_friction_takes():
     assert head_loss(x, step, (2.0, 7.0)) == pytest.approx(0.02)
     nothing = np.full(100, np.nan)
     assert math.isnan(head_loss(x, nothing, (2.0, 7.0))) and math.isnan(energy_slope(x, nothing))
+
+
+def test_the_velocity_of_a_section_is_its_discharge_over_its_area():
+    """A channel with a slow bank a quarter as deep as its middle."""
+    velocity, depth = np.array([[0.2, 1.0, np.nan], [np.nan] * 3]), np.array([[0.5, 2.0, np.nan], [np.nan] * 3])
+    found = through(velocity, depth)
+    assert found[0] == pytest.approx((0.2 * 0.5 + 2.0) / 2.5) and math.isnan(found[1])
 
 
 def test_the_window_of_levels_is_five_times_that_of_a_depth():

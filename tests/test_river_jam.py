@@ -84,6 +84,13 @@ def test_ice_that_leaves_the_reach_empty_for_a_moment_only_interrupts_a_jam():
     assert first.lasts == "held" and first.end == pytest.approx(50.0, abs=0.2)
 
 
+def test_a_jam_that_holds_is_told_rather_than_one_before_that_let_go():
+    found = jam(TIMES, *stood((10.0, 17.0), (30.0, 70.0), (80.0, 99.0)), 0.1, 0.5, 5.0)
+    assert found.lasts == "held" and (found.begin, found.end) == pytest.approx((30.0, 70.0), abs=0.31)
+    found = jam(TIMES, *stood((10.0, 17.0), (30.0, 38.0)), 0.1, 0.5, 5.0)
+    assert found.lasts == "transient" and found.begin == pytest.approx(10.0, abs=0.31)
+
+
 def test_a_jam_that_lasts_exactly_three_windows_holds():
     through = np.zeros(len(TIMES))
     speed = np.where(TIMES < 15.05, 0.0, 9.0)
@@ -108,6 +115,7 @@ def test_the_place_of_a_jam_reaches_to_the_first_ice_that_moves():
 
 def test_kinds_of_jam():
     assert [kind(1.2, False), kind(1.5, False), kind(1.2, True)] == ["surface", "thickened", "grounded"]
+    assert [kind(math.nan, False), kind(math.nan, True)] == ["unknown", "grounded"]
 
 
 COVER = blocks.Cover(2.0, 4.0)
@@ -137,6 +145,8 @@ def test_a_block_that_still_moves_is_undecided_and_one_that_left_is_known():
     assert blocks.block(np.array([1.5, 1.8]), np.zeros(2), still, 0.4, COVER, 0.5).name == "undecided"
     gone = np.array([1.8, 2.2, 4.5, math.nan]), np.array([0.0, 60.0, 50.0, math.nan]), np.full(4, math.nan)
     assert blocks.block(*gone, 0.4, COVER, 0.5).name == "passed"
+    beyond = blocks.block(np.array([4.5, 5.0]), np.zeros(2), still, 0.4, COVER, 0.5)
+    assert beyond.name == "undecided" and not beyond.critical, "it began downstream of the cover"
     assert blocks.block(np.full(3, math.nan), np.zeros(3), np.zeros(3), 0.4, COVER, 0.5).name == "undecided"
 
 
@@ -185,8 +195,12 @@ def test_percentiles_of_a_ramp():
     assert piers.percentiles(peaks(np.full(1000, -7.0), 0.001, 5)) == pytest.approx(7.0)
 
 
-def test_forces_scale_with_the_cube_of_lengths():
-    assert piers.scaled(np.array([2.0]), 10.0) == pytest.approx(2000.0)
+def test_rows_do_not_tell_of_means_over_less_than_them():
+    """A hit of 900 N for 2 ms in a row of 50 ms: whether its mean over 10 ms is 180 N or less is not known."""
+    force = np.zeros(2000)
+    force[700:704] = 900.0
+    found = piers.percentiles(peaks(force, 0.0005, 100))
+    assert found[0, 0] == 900.0 and np.isnan(found[1]).all() and found[2, 0] == pytest.approx(18.0)
 
 
 def test_arches_are_chains_from_pier_to_pier():

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from types import SimpleNamespace
 
 import fake_river
@@ -149,13 +150,16 @@ def test_the_page_has_pictures_and_tables(channel):
     assert float(hit["p100"]) == 800.0 and float(hit["p95"]) == 0.0 and len(piers) == 3 * 2 * 6 * 3
     balance, _ = rows(page.folder / "ice_balance.csv")
     assert float(balance[-1]["passed_piers"]) == pytest.approx(3 * VOLUME)
+    through = [float(row["discharge_piers"]) for row in balance]
+    assert max(through[20:]) == pytest.approx(VOLUME / channel.wait, rel=1e-6) and through[-20] == 0.0
     assert len(rows(page.folder / "reach.csv")[0]) == 2
     assert not list(page.folder.glob(".*")), "nothing half written is left"
 
 
 def test_the_page_of_a_plane_has_its_block(covered):
     words = section.parts(Page(covered.run, vtk=False))
-    assert "under-turned" in words and words.count("<img") == 3 and "Ice jam" not in words and "nan" not in words
+    told = re.sub('src="[^"]*"', "", words)
+    assert "under-turned" in told and told.count("<img") == 3 and "Ice jam" not in told and "nan" not in told
     (block,), units = rows(covered.run.folder / "report" / "blocks.csv")
     assert block["class"] == "under-turned" and block["critical"] == "True" and units["tilt"] == "degrees"
     assert pictures.plan(covered, 8.0) is None and pictures.pier_forces(covered) is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from parsim.report.curves import ACCENT, FAINT, INK, WATER, figure
+from parsim.report.curves import ACCENT, FAINT, INK, LINES, WATER, figure
 from parsim.river.piers import PERCENTS, WINDOWS, percentiles
 from parsim.river.profiles import across
 from parsim.river.verdicts import outlines
@@ -34,17 +35,20 @@ def plan(river: River, time: float) -> Figure | None:
     bodies, around = river.run.bodies(frame), outlines(river, frame)
     floes = [k for k in around if river.loose[k]]
     speed = np.linalg.norm(bodies["velocity"], axis=1)
-    patches = PolyCollection([around[k] for k in floes], cmap="turbo", edgecolors=INK, linewidths=0.4)
-    patches.set_array(speed[floes])
-    patches.set_clim(0.0, max(1.2 * river.drift, 1e-12))
+    shifts = [(a * river.case.box.size[0], b * river.case.box.size[1]) for a, b in _images(river)]
+    drawn_floes = [around[k] + shift for shift in shifts for k in floes]  # at sides that repeat, on both
+    patches = PolyCollection(drawn_floes, cmap="turbo", edgecolors=INK, linewidths=0.4)
+    patches.set_array(np.tile(speed[floes], len(shifts)))
+    patches.set_clim(0.0, max([1.2 * river.drift, *speed[floes], 0.0]) or 1.0)
     top.add_collection(patches)
     drawn.colorbar(patches, ax=top, label="speed (m/s)")
+    concentration, jam = (each[river.run.nearest(time)] for each in (river.fields.concentration, river.fields.jam))
     maps = (
-        (middle, "concentration", "concentration", "Blues", 1.0),
-        (bottom, "jam", "jam thickness (m)", "viridis", None),
+        (middle, concentration, "concentration", "Blues", 1.0),
+        (bottom, jam, "jam thickness (m)", "viridis", np.nanmax(jam, initial=river.floe)),
     )
-    for axes, name, label, colours, most in maps:
-        values = np.ma.masked_invalid(getattr(river.fields, name)[river.run.nearest(time)])
+    for axes, found, label, colours, most in maps:
+        values = np.ma.masked_invalid(found)
         extent = (low[0], high[0], low[1], high[1])
         picture = axes.imshow(
             values.T, origin="lower", extent=extent, cmap=colours, norm=Normalize(0.0, most), interpolation="nearest"
@@ -60,6 +64,12 @@ def plan(river: River, time: float) -> Figure | None:
     return drawn
 
 
+def _images(river):
+    """Where a plan that repeats is seen: (0, 0) and what is beside it, in lengths and widths of the box."""
+    each = [(0, -1, 1) if np.isfinite(period) else (0,) for period in river.period]
+    return [*product(*each)]
+
+
 def long_section(river: River, time: float) -> Figure | None:
     """Bed, piezometric level, ice and velocities along x, of the window that ends at a time, s."""
     along = river.along(time)
@@ -72,7 +82,10 @@ def long_section(river: River, time: float) -> Figure | None:
     least = np.nanmin(bed)
     top.fill_between(x, least - 0.05 * (np.nanmax(along["level_90"]) - least), bed, color=BED, linewidth=0)
     top.fill_between(x, bed, np.fmin(along["water_top"], along["level"]), color=WATER, alpha=0.2, linewidth=0)
-    top.fill_between(x, along["ice_low"], along["ice_high"], color=ICE, linewidth=0, label="ice, its inner 90 %")
+    low, high, width = along["ice_low"], along["ice_high"], river.columns.step[0]
+    shades = [(ICE, 0.2 + 0.8 * share) for share in np.clip(along["concentration"], 0.0, 1.0)]
+    top.bar(x, high - low, width, low, color=shades, linewidth=0)
+    top.fill_between([], [], color=ICE, linewidth=0, label="ice, its inner 90 %, paler where it covers less")
     top.fill_between(x, along["level_10"], along["level_90"], color=WATER, alpha=0.35, linewidth=0)
     top.plot(x, along["level"], color=WATER, label="piezometric level, with 10 to 90 % across")
     if np.isfinite(along["rise"]).any():
@@ -80,14 +93,16 @@ def long_section(river: River, time: float) -> Figure | None:
     top.plot(x, along["head"], color=ACCENT, linewidth=1, linestyle="-.", label="energy head")
     top.set_ylabel("z (m)")
     top.set_ylim(least - 0.05 * (np.nanmax(along["head"]) - least), None)
-    top.set_title(f"mean of the {river.window:.3g} s before t = {time:.3f} s", fontsize=9, loc="left")
+    drawn.suptitle(f"mean of the {river.window:.3g} s before t = {time:.3f} s", fontsize=9, x=0.07, ha="left")
     bottom.fill_between(x, along["velocity_10"], along["velocity_90"], color=WATER, alpha=0.25, linewidth=0)
     bottom.plot(x, along["velocity"], color=WATER, label="water, with 10 to 90 % across")
-    bottom.plot(x, along["ice_speed"], color=ACCENT, label="ice")
+    bottom.plot(x, along["ice_speed"], color=ACCENT, marker=".", markersize=3, label="ice")
     bottom.set(ylabel="velocity (m/s)", xlabel="x (m)", xlim=(river.case.box.min[0], river.case.box.max[0]))
     bottom.set_ylim(min(0.0, *bottom.get_ylim()), None)
     for each in (top, bottom):
-        each.legend(fontsize=7, frameon=False, ncols=4, loc="lower right", bbox_to_anchor=(1.0, 0.99))
+        each.legend(
+            fontsize=7, frameon=False, ncols=4, columnspacing=1.0, loc="lower right", bbox_to_anchor=(1.0, 0.99)
+        )
     return drawn
 
 
@@ -132,7 +147,7 @@ def pier_forces(river: River) -> Figure | None:
     axes[0, 0].legend(fontsize=7, frameon=False)
     axes[-1, 0].set_xlabel("time (s)")
     axes[-1, 1].set_xticks(range(len(WINDOWS)), [f"{1000 * w:g} ms" for w in WINDOWS])
-    axes[-1, 1].set_xlabel("mean over")
+    axes[-1, 1].set(xlabel="mean over", xlim=(-0.5, len(WINDOWS) - 0.5))
     return drawn
 
 
@@ -153,9 +168,9 @@ def balance(river: River) -> Figure | None:
     axes = axes[0, 0]
     axes.plot(time, river.stored(), color=INK, label="in the box")
     axes.plot(time, river.stored(river.reach), color=FAINT, label="in the reach")
-    for (name, x), style in zip(river.measure.control.items(), ("-", "--", "-.", ":") * 9, strict=False):
+    for (name, x), style in zip(river.measure.control.items(), cycle(LINES), strict=False):
         axes.plot(time, river.passed(x), style, color=ACCENT, label=f"passed {name}")
     axes.set(xlabel="time (s)", ylabel="ice (m3)")
-    axes.set_ylim(0.0, None)
+    axes.set_ylim(min(0.0, *axes.get_ylim()), None)
     axes.legend(fontsize=7, frameon=False, ncols=4)
     return drawn

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from parsim.geometry.rotation import matrices
+
 LEVEL, FLAT, OVER = 15.0, 45.0, 90.0  # degrees: stable below, submerged flat below, under-turned from
 UNDER = 0.25  # of its length, that the centre of a submerged block is under the cover
 AT_REST = 0.05  # of the water's speed
@@ -35,15 +37,8 @@ def tilts(up: np.ndarray) -> np.ndarray:
 
 def ups(quaternion: np.ndarray) -> np.ndarray:
     """The direction (T, 3) that is up in the first row and turns with a body, from its quaternions (T, 4)."""
-    w, x, y, z = quaternion.T
-    rows = np.stack(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )
-    return np.einsum("ijt,j->ti", rows, rows[2, :, 0])
+    turns = matrices(np.ascontiguousarray(quaternion))
+    return turns @ turns[0, 2]
 
 
 def block(x: np.ndarray, tilt: np.ndarray, speed: np.ndarray, length: float, cover: Cover, water: float) -> Block:
@@ -51,7 +46,8 @@ def block(x: np.ndarray, tilt: np.ndarray, speed: np.ndarray, length: float, cov
 
     `water`: speed of the water, m/s. One that has turned over is "under-turned", one whose centre has come UNDER of its
     length under the cover and had not tilted by FLAT till then is "submerged", whatever becomes of either. Any other
-    has "passed", or is "stuck" if it rests under the cover, or "stable" if it rests level at its edge.
+    has "passed", or is "stuck" if it rests under the cover, or "stable" if it rests level at its edge. One that began
+    downstream of the cover is undecided unless it turned over.
     """
     there = np.isfinite(x)
     x, tilt, speed = x[there], tilt[there], speed[there]
@@ -67,7 +63,7 @@ def _name(x, tilt, speed, length, cover, water):
     if under.any() and tilt[: under.argmax() + 1].max() < FLAT:
         return "submerged"
     if x[-1] > cover.end:
-        return "passed"
+        return "passed" if x[0] <= cover.end else "undecided"
     if abs(speed[-1]) > AT_REST * water:
         return "undecided"
     if x[-1] > cover.begin:

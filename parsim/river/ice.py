@@ -51,7 +51,7 @@ def jam_thickness(inner: np.ndarray, floe: float) -> np.ndarray:
 
 
 def porosity(solid: np.ndarray, jam: np.ndarray) -> np.ndarray:
-    """Share (nx, ny) of a jam's thickness that is not ice, from solid and jam thickness (nx, ny), m."""
+    """Share (..., nx, ny) of a jam's thickness that is not ice, from solid and jam thickness (..., nx, ny), m."""
     return 1.0 - solid / jam
 
 

@@ -29,23 +29,22 @@ def window(floe: float, speed: float) -> float:
 def jam(
     times: np.ndarray, passed: np.ndarray, speed: np.ndarray, supply: float, water: float, length: float
 ) -> Jam | None:
-    """The first jam, None if there is none.
+    """The first jam that holds, else the first; None if there is none.
 
     times (T,), s; passed (T,), m3, through the control plane so far; speed (T,), m/s, mean of the ice over the reach
     upstream of it, NaN where there is none; supply, m3/s, of ice; water, m/s, its speed; length, s: see `window`.
     """
-    if not np.isfinite(length):
+    if not (len(times) and np.isfinite(length)):
         return None
     stands = _stands(times, passed, speed, supply, water, length)
-    if not stands.any():
-        return None
-    first = int(stands.argmax())
-    moves = np.flatnonzero(~stands[first:])
-    last = first + int(moves[0]) - 1 if len(moves) else len(stands) - 1
-    begin, end = float(times[first]), float(times[last] + length)
-    if end - begin >= HOLDS * length * (1.0 - 1e-9):
-        return Jam(begin, end, "held")
-    return Jam(begin, end, "transient" if len(moves) else "open")
+    edges = np.flatnonzero(np.diff(stands, prepend=False, append=False)).reshape(-1, 2)
+    every = [_lasting(times[first], times[stop - 1] + length, length, stop < len(stands)) for first, stop in edges]
+    return next((each for each in every if each.lasts == "held"), every[0] if every else None)
+
+
+def _lasting(begin, end, length, ended):
+    holds = end - begin >= HOLDS * length * (1.0 - 1e-9)
+    return Jam(float(begin), float(end), "held" if holds else "transient" if ended else "open")
 
 
 def _stands(times, passed, speed, supply, water, length):
@@ -77,7 +76,9 @@ def extent(x: np.ndarray, speed: np.ndarray, water: float, plane: float) -> tupl
 
 
 def kind(layers: float, grounded: bool) -> str:
-    """What a jam is, by the layers of floes in it and whether it touches the bed."""
+    """What a jam is, by the layers of floes in it, NaN if it is not known, and whether it touches the bed."""
     if grounded:
         return "grounded"
+    if np.isnan(layers):
+        return "unknown"
     return "surface" if layers < LAYERS else "thickened"

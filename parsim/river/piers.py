@@ -43,16 +43,13 @@ def percentiles(
     """Amounts (windows, percents), N or N m, that the means over each window, s, stay below so much of the time.
 
     Of the window 0 the rows' largest amounts stand for themselves: its maximum is that of all steps, the others are
-    no less than those of all steps. NaN where the run is shorter than a window.
+    no less than those of all steps. NaN where the run is shorter than a window, or its rows are longer: these do not
+    tell what acted in a part of them.
     """
     found = np.full((len(windows), len(percents)), np.nan)
     for k, length in enumerate(windows):
         values = running_mean(peaks, length) if length > 0.0 else extremes(peaks)
-        if len(values):
+        told = length == 0.0 or peaks.span.mean() <= 1.01 * length
+        if told and len(values):
             found[k] = np.percentile(np.abs(values), percents)
     return found
-
-
-def scaled(force: np.ndarray, scale: float) -> np.ndarray:
-    """Forces of a model, N, at a prototype `scale` times as long, by Froude's law."""
-    return force * scale**3

@@ -24,6 +24,19 @@ def across(values: np.ndarray) -> Profile:
         return Profile(np.nanmean(values, axis=1), *np.nanpercentile(values, (10.0, 50.0, 90.0), axis=1))
 
 
+def through(velocity: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """Mean velocity (nx,), m/s, of sections by area: discharge over area, of columns (nx, ny) of these depths, m."""
+    wet = np.isfinite(velocity) & np.isfinite(depth)
+    flow, area = (np.where(wet, each, 0.0).sum(axis=1) for each in (velocity * depth, depth))
+    return np.divide(flow, area, out=np.full(len(area), np.nan), where=area > 0.0)
+
+
+def mean_of(values: np.ndarray) -> float:
+    """Mean of the values (n,) that are there, NaN of none."""
+    there = values[np.isfinite(values)]
+    return float(there.mean()) if there.size else float("nan")
+
+
 def mean_between(times: np.ndarray, values: np.ndarray, begin: float, end: float) -> np.ndarray:
     """Mean of the values (T, ...) of the times (T,) from begin to end, s, NaN left out; of the nearest if there are
     none."""

@@ -47,12 +47,6 @@ def cuts_of(points: np.ndarray, quads: np.ndarray, body: np.ndarray, columns: Co
     return Cuts(i * int(count[1]) + j, column, owner, np.where(up, 1.0, -1.0), found[:, 3])
 
 
-def chosen(cuts: Cuts, which: np.ndarray) -> Cuts:
-    """The cuts of the bodies for which `which` (bodies,) bool is true."""
-    here = which[cuts.body]
-    return Cuts(*(each[here] for each in cuts))
-
-
 def _twice_the_area(triangles):
     """Twice the area (n,), m2, of triangles (n, 3, 3) on the plan, positive where they look up."""
     p, q, r = (triangles[:, k, :2] for k in range(3))

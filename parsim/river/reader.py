@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from parsim.case.model import parse
 from parsim.geometry.faces import period, repeats
-from parsim.river import ice, profiles, water
+from parsim.river import ice, jam, profiles, water
 from parsim.river.columns import columns_of
 from parsim.river.piers import Peaks
-from parsim.river.planes import passed, stored
-from parsim.river.raster import chosen, cuts_of
+from parsim.river.planes import discharge, passed, stored
+from parsim.river.raster import cuts_of
 
 if TYPE_CHECKING:
     from parsim.output.reader import Run
@@ -38,8 +38,8 @@ class Fields(NamedTuple):
 
 
 class Tracks(NamedTuple):
-    """Of each row and body (T, nb, ...), NaN where one is not there: time (T,), s; x, m, without jumps at sides that
-    repeat; home, m, the same in the box; speed along x, m/s; quaternion (T, nb, 4)."""
+    """Of each row from 0 s on and body (T, nb, ...), NaN where one is not there: time (T,), s; x, m, without jumps at
+    sides that repeat; home, m, the same in the box; speed along x, m/s; quaternion (T, nb, 4)."""
 
     time: np.ndarray
     x: np.ndarray
@@ -54,18 +54,19 @@ class River:
     def __init__(self, run: Run) -> None:
         case = self.case = parse(run.case)
         self.run, self.measure, self.planar = run, case.measure, case.dimensions == 2
-        self.gravity, self.tilt = -case.gravity[2], case.gravity[0] / -case.gravity[2]
+        self.gravity = -case.gravity[2]
         self.reach = self.measure.reach or (case.box.min[0], case.box.max[0])
         edge = self.measure.grid or 2.0 * case.spacing
         self.columns = columns_of(case.box.min, case.box.max, edge, repeats(case)[:2], self.planar)
         self.period = (float(period(case)[0]), float(period(case)[1]))
         self.loose = np.array([not body.fixed for body in case.bodies], bool)
+        self.ground = np.array([body.shape.kind == "bed" for body in case.bodies], bool)
         self.volume = np.array([body.shape.volume for body in case.bodies])
         thick = np.array([2.0 * body.shape.thinnest(self.planar) for body in case.bodies])
-        area = self.volume / thick
-        self.size = area if self.planar else np.sqrt(4.0 / np.pi * area)
+        self.size = _sizes(self.volume, thick, self.planar)
         self.floe = middle(thick[self.loose], self.volume[self.loose])
         self.window = water.window(case.depth, self.gravity)
+        self._read: dict[str, dict[str, np.ndarray]] = {}
 
     @property
     def piers(self) -> list[int]:
@@ -74,13 +75,23 @@ class River:
         return [
             k
             for k, body in enumerate(self.case.bodies)
-            if (body.fixed and body.name != cover if named is None else body.name in named)
+            if (body.fixed and not self.ground[k] and body.name != cover if named is None else body.name in named)
         ]
+
+    def floor(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Heights (n,), m, of the floor of the box, or of the ground on it, at places x, y (n,), m."""
+        found = np.full(len(x), float(self.case.box.min[2]))
+        for k in np.flatnonzero(self.ground):
+            found = np.maximum(found, self.case.bodies[k].shape.heights.at(x, y))
+        return found
 
     @property
     def within(self) -> np.ndarray:
-        """Which columns along x are in the reach: (nx,) bool."""
-        return (self.columns.x >= self.reach[0]) & (self.columns.x <= self.reach[1])
+        """Which columns along x have their middle in the reach, one at least: (nx,) bool."""
+        x, (begin, end) = self.columns.x, self.reach
+        here = (x >= begin) & (x <= end)
+        here[np.abs(x - 0.5 * (begin + end)).argmin()] = True
+        return here
 
     @cached_property
     def fields(self) -> Fields:
@@ -99,7 +110,8 @@ class River:
             nothing, none = np.zeros(self.columns.shape), np.full(self.columns.shape, np.nan)
             return frame["time"], *wet, nothing, nothing, none, none, none, none
         bodies = self.run.bodies(number)
-        cuts = chosen(cuts_of(bodies["points"], bodies["quads"], bodies["body"], self.columns), self.loose)
+        floes = self.loose[bodies["body"]]
+        cuts = cuts_of(bodies["points"], bodies["quads"][floes], bodies["body"][floes], self.columns)
         inner = ice.heights(cuts, self.columns)
         return (
             frame["time"],
@@ -120,15 +132,35 @@ class River:
         """Begin and end, s, of the time before ice changes the level."""
         return self.measure.before or (0.0, self.window)
 
+    def tilt(self, end: float) -> float:
+        """What drives the flow along x over its weight, in the window that ends at a time, s: the slope of a tilted
+        channel, and the force of one that holds a discharge."""
+        driven = self._rows("channel")
+        if not driven:
+            return self.case.gravity[0] / self.gravity
+        slope = profiles.mean_between(driven["time"], driven["energy_slope"], end - self.window, end)
+        return float(slope)
+
+    def _rows(self, name):
+        """A series by its columns, empty where the run has not written it or it has no rows."""
+        if name not in self._read:
+            series = self.run.series(name) if name in self.run.series_names else {}
+            self._read[name] = series if len(series.get("step", ())) else {}
+        return self._read[name]
+
     def rise(self, end: float) -> np.ndarray:
         """How much higher the level is over the width (nx,), m, in the window that ends at a time, s, than before."""
-        earlier = profiles.mean_between(self.fields.time, self.fields.level, *self.before)
+        time, level = self.fields.time, self.fields.level
+        if (told := np.isfinite(level).any(axis=(1, 2))).any():  # the frame of the start has no pressures
+            time, level = time[told], level[told]
+        earlier = profiles.mean_between(time, level, *self.before)
         return profiles.across(self.mean("level", end)).mean - profiles.across(earlier).mean
 
     def heads(self, end: float) -> np.ndarray:
         """Energy heads (nx,), m, in the window that ends at a time, s."""
-        level, velocity = (profiles.across(self.mean(name, end)).mean for name in ("level", "velocity"))
-        return profiles.head(level, velocity, self.gravity)
+        level, velocity, top, bottom = (self.mean(name, end) for name in ("level", "velocity", "top", "bottom"))
+        velocity = profiles.through(velocity, top - bottom)
+        return profiles.head(profiles.across(level).mean, velocity, self.gravity)
 
     def along(self, end: float) -> dict[str, np.ndarray]:
         """Profiles along x in the window that ends at a time, s: {name: values (nx,)}."""
@@ -141,8 +173,9 @@ class River:
         others = {"bed": "bottom", "water_top": "top", "concentration": "concentration", "ice_speed": "speed",
                   "ice_low": "low", "ice_high": "high"}  # fmt: skip
         found |= {name: profiles.across(self.mean(field, end)).mean for name, field in others.items()}
-        solid, thick = self.mean("solid", end), self.mean("jam", end)
-        found["porosity"] = profiles.across(ice.porosity(solid, thick)).mean
+        voids = ice.porosity(self.fields.solid, self.fields.jam)
+        voids = profiles.mean_between(self.fields.time, voids, end - self.window, end)
+        found["porosity"] = profiles.across(voids).mean
         found["layers"] = ice.layers(found["solid_thickness"], self.floe)
         return found | {"rise": self.rise(end), "head": self.heads(end)}
 
@@ -151,14 +184,16 @@ class River:
         along, here, between = self.along(end), self.within, self.measure.head_loss
         x, heads = along["x"], along["head"]
         names = ("rise", "velocity", "concentration", "solid_thickness", "jam_thickness", "ice_speed")
-        found = {"energy_slope": profiles.energy_slope(x[here], heads[here], self.tilt)}
-        found["head_loss"] = profiles.head_loss(x, heads, between, self.tilt) if between else float("nan")
-        return found | {name: float(profiles.across(along[name][here][None]).mean[0]) for name in names}
+        tilt = self.tilt(end)
+        found = {"energy_slope": profiles.energy_slope(x[here], heads[here], tilt)}
+        found["head_loss"] = profiles.head_loss(x, heads, between, tilt) if between else float("nan")
+        return found | {name: profiles.mean_of(along[name][here]) for name in names}
 
     @cached_property
     def tracks(self) -> Tracks:
-        """`Tracks` of all bodies by the series of bodies."""
+        """`Tracks` of all bodies by the series of bodies, without the rows in which they settle."""
         series, names = self.run.series("bodies"), {name: k for k, name in enumerate(self.run.body_names)}
+        series = {name: values[series["time"] >= 0.0] for name, values in series.items()}
         time, row = np.unique(series["time"], return_inverse=True)
         body = np.array([names[name] for name in series["body"].tolist()], int)
         found = np.full((6, len(time), len(names)), np.nan)
@@ -170,8 +205,15 @@ class River:
 
     def passed(self, plane: float) -> np.ndarray:
         """Ice that has passed a plane, m, by each row of the tracks (T,), m3."""
-        at = self.loose
-        return passed(self.tracks.x[:, at], self.volume[at], plane, self.period[0])
+        at, x, lost = self.loose, self.tracks.x.copy(), self._rows("lost")
+        for k in np.flatnonzero(np.char.startswith(lost["what"], "body ")) if lost else ():
+            row = np.searchsorted(self.tracks.time, lost["time"][k])
+            x[row : row + 1, int(lost["id"][k])] = lost["x"][k]  # where it left, beyond planes since the row before
+        return passed(x[:, at], self.volume[at], plane, self.period[0])
+
+    def discharge(self, plane: float) -> np.ndarray:
+        """Ice through a plane, m, at each row of the tracks (T,), m3/s: mean over the time that makes a jam."""
+        return discharge(self.tracks.time, self.passed(plane), self.wait)
 
     def stored(self, reach: tuple[float, float] = (-np.inf, np.inf)) -> np.ndarray:
         """Ice in a reach, m, at each row of the tracks (T,), m3; of the whole box if none is named."""
@@ -184,10 +226,18 @@ class River:
         here = velocity[self.within]
         return float(np.nanmean(here)) if np.isfinite(here).any() else 0.0
 
+    @property
+    def wait(self) -> float:
+        """Time, s, over which ice must stand to have jammed; inf without a flow."""
+        return jam.window(middle(self.size[self.loose], self.volume[self.loose]), self.drift)
+
     def peaks(self, body: str, kind: str, part: str) -> Peaks | None:
-        """What acted on a body, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""
-        series: dict[str, Any] = self.run.series("peaks") if "peaks" in self.run.series_names else {}
-        here = (series["body"] == body) & (series["kind"] == kind) if series and len(series["step"]) else np.zeros(0)
+        """What acted on a body from 0 s on, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""
+        series = self._rows("peaks")
+        if not series:
+            return None
+        settled = series["time"] - series["span"] >= -1e-9
+        here = (series["body"] == body) & (series["kind"] == kind) & settled
         if not here.any():
             return None
         sensor = series["sensor"][here][0]  # another one tells the same
@@ -200,6 +250,13 @@ class River:
 def river_of(run: Run) -> River:
     """The `River` of a run, made once for all that ask in turn."""
     return River(run)
+
+
+def _sizes(volume, thick, planar):
+    """Diameters of the discs (2D: lengths) as large in plan as bodies (n,), m, by volume, m3, and thickness, m; no body
+    is less in plan than the ball in it that is as thick."""
+    area = volume / thick
+    return np.maximum(area if planar else np.sqrt(4.0 / np.pi * area), thick)
 
 
 def middle(values: np.ndarray, weight: np.ndarray) -> float:

@@ -67,11 +67,14 @@ def blocks_table(river: River) -> str:
 
 
 def balance_table(river: River) -> str:
-    """Ice at each row of the series of bodies: in the box, in the reach, and through each control plane so far, m3."""
+    """Ice at each row of the series of bodies: in the box, in the reach, through each control plane so far, m3, and its
+    discharge there, m3/s."""
     planes = river.measure.control
     columns = {"time": river.tracks.time, "stored": river.stored(), "in_reach": river.stored(river.reach)}
-    columns |= {f"passed_{name}": river.passed(x) for name, x in planes.items()}
     units = {name: "s" if name == "time" else "m3" for name in columns}
+    for name, x in planes.items():
+        columns |= {f"passed_{name}": river.passed(x), f"discharge_{name}": river.discharge(x)}
+        units |= {f"passed_{name}": "m3", f"discharge_{name}": "m3/s"}
     return text(units, [tuple(map(float, row)) for row in zip(*columns.values(), strict=True)])
 
 

@@ -6,22 +6,23 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from parsim.geometry.rotation import matrices
 from parsim.river import ice, profiles
 from parsim.river.arches import neighbours, outline
 from parsim.river.blocks import Block, Cover, block, tilts, ups
-from parsim.river.jam import Jam, extent, jam, kind, window
+from parsim.river.jam import Jam, extent, jam, kind
 from parsim.river.planes import mean_speed
-from parsim.river.reader import middle
 
 if TYPE_CHECKING:
     from parsim.river.reader import River
 
-_NEAR = 0.5  # spacings between footprints that count as neighbours, and over the bed on which a floe is grounded
+_NEAR = 0.5  # spacings between footprints that count as neighbours, and over the bed on which a floe has grounded
 
 
 class Verdict(NamedTuple):
-    """A jam, or None; where it stands, head and toe, m; how many floes lie over each other where there are any, and its
-    kind, "none" without a jam; what it was judged by: supply of ice, m3/s, speed of the water, m/s, window, s."""
+    """A jam, or None; where it stands, head and toe, m, NaN where no frame shows it; how many floes lie over each other
+    where there are any, and its kind, "none" without a jam; what it was judged by: supply of ice, m3/s, speed of the
+    water, m/s, window, s."""
 
     jam: Jam | None
     head: float
@@ -36,12 +37,12 @@ class Verdict(NamedTuple):
 def verdict(river: River) -> Verdict | None:
     """Whether ice has jammed; None where the case does not ask, or has no ice."""
     sought, at = river.measure.jam, river.loose
-    if sought is None or not at.any():
+    if sought is None or not at.any() or not len(river.tracks.time):
         return None
     tracks, reach, plane = river.tracks, sought.reach, river.measure.control[sought.control]
     supply = sought.supply or float(river.stored(reach).mean() / (reach[1] - reach[0]) * river.drift)
     speed = mean_speed(tracks.home[:, at], tracks.speed[:, at], river.volume[at], reach)
-    wait = window(middle(river.size[at], river.volume[at]), river.drift)
+    wait = river.wait
     by = supply, river.drift, wait
     found = jam(tracks.time, river.passed(plane), speed, supply, river.drift, wait)
     if found is None:
@@ -59,51 +60,55 @@ def verdict(river: River) -> Verdict | None:
 
 
 def on_the_bed(river: River, frame: int, reach: tuple[float, float]) -> np.ndarray:
-    """Which floes (nb,) with their centre in a reach, m, are within half a spacing of the floor of the box."""
-    low, x = extents(river, frame, 2)[:, 0], river.run.bodies(frame)["position"][:, 0]
-    near = low <= river.case.box.min[2] + _NEAR * river.case.spacing
-    return near & (x >= reach[0]) & (x <= reach[1]) & river.loose
-
-
-def extents(river: River, frame: int, axis: int) -> np.ndarray:
-    """From where to where along an axis the bodies are in a frame (nb, 2), m; (inf, -inf) where one is not there."""
+    """Which floes (nb,) with their centre in a reach, m, have a corner within half a spacing of the bed."""
     bodies = river.run.bodies(frame)
-    place, body = bodies["points"][bodies["quads"].ravel(), axis], np.repeat(bodies["body"], 4)
-    found = np.tile([np.inf, -np.inf], (len(river.loose), 1))
-    np.minimum.at(found[:, 0], body, place)
-    np.maximum.at(found[:, 1], body, place)
-    return found
+    corners, body = bodies["points"][bodies["quads"].ravel()], np.repeat(bodies["body"], 4)
+    near, x = np.zeros(len(river.loose), bool), bodies["position"][:, 0]
+    near[body[corners[:, 2] - river.floor(*corners[:, :2].T) <= _NEAR * river.case.spacing]] = True
+    return near & (x >= reach[0]) & (x <= reach[1]) & river.loose
 
 
 def blocks(river: River) -> dict[str, Block]:
     """What became of every block by its name; none where the case names no cover."""
-    if river.measure.cover is None:
+    if river.measure.cover is None or not len(river.tracks.time):
         return {}
-    names, tracks, along = river.run.body_names, river.tracks, extents(river, 0, 0)
-    cover, found = Cover(*along[names.index(river.measure.cover)].tolist()), {}
+    names, tracks, found = river.run.body_names, river.tracks, {}
+    lid = names.index(river.measure.cover)
+    cover = Cover(*(tracks.x[0, lid] + end for end in _ends(river, lid, 0)))
     for k in np.flatnonzero(river.loose).tolist():
-        there = np.isfinite(tracks.x[:, k])
-        tilt = np.full(len(tracks.time), np.nan)
-        if there.any():
+        tilt, length = np.full(len(tracks.time), np.nan), np.nan
+        there = np.flatnonzero(np.isfinite(tracks.x[:, k]))
+        if len(there):
             tilt[there] = tilts(ups(tracks.quaternion[there, k]))
-        length = float(along[k, 1] - along[k, 0])
+            low, high = _ends(river, k, there[0])
+            length = high - low
         found[names[k]] = block(tracks.x[:, k], tilt, tracks.speed[:, k], length, cover, river.drift)
     return found
 
 
+def _ends(river, body, row):
+    """Where a body begins and ends along x from its centre in a row of the tracks, m."""
+    (turn,) = matrices(river.tracks.quaternion[row, body].copy()[None])
+    shape = river.case.bodies[body].shape
+    return -float(shape.reach(-turn[0])), float(shape.reach(turn[0]))
+
+
 def outlines(river: River, frame: int) -> dict[int, np.ndarray]:
-    """Convex outlines (k, 2), m, on the plan of the bodies that are there in a frame, by number."""
+    """Convex outlines (k, 2), m, on the plan of the bodies that are there in a frame but for the bed, by number."""
     bodies = river.run.bodies(frame)
     return {
         int(k): outline(bodies["points"][np.unique(bodies["quads"][bodies["body"] == k]), :2])
         for k in np.unique(bodies["body"])
+        if not river.ground[k]
     }
 
 
 def pairs(river: River, frame: int) -> list[tuple[int, int]]:
-    """Numbers of the bodies whose outlines are at most half a spacing apart in a frame; none of a 2D run."""
+    """Numbers of floes and piers whose outlines are at most half a spacing apart in a frame; none of a 2D run."""
     if river.planar:
         return []
-    around = outlines(river, frame)
+    piers = set(river.piers)
+    around = {k: corners for k, corners in outlines(river, frame).items() if river.loose[k] or k in piers}
     keys, near = [*around], neighbours([*around.values()], _NEAR * river.case.spacing, river.period)
-    return [(keys[one], keys[other]) for one, other in near]
+    found = [(keys[one], keys[other]) for one, other in near]
+    return [pair for pair in found if not piers.issuperset(pair)]

@@ -78,6 +78,10 @@ def _verdict(run):
     found = verdicts.verdict(_river(run))
     if found is None:
         raise InputError("the case looks for no jam; it needs measure.jam, and ice that is free")
+    if not math.isfinite(found.window):
+        raise InputError(
+            "no water flows down the reach before ice changes its level, to tell a jam by; see measure.before"
+        )
     return found
 
 

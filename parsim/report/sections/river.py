@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from parsim.errors import InputError
 from parsim.output.frames import write_text
 from parsim.report.measures import asked, columns, moments
 from parsim.report.page import listing, section, table
@@ -29,9 +30,12 @@ def parts(page: Page) -> str:
     run = page.run
     if not run.case.get("measure") or not len(run.times("water")):
         return ""
-    river, times = river_of(run), run.times("water")
+    try:
+        river, times = river_of(run), run.times("water")
+    except InputError as error:  # a file of a body or of the bed is gone, or another one
+        return section("River", listing(error.messages))
     ends = [float(times[k]) for k in moments(times, asked(run, "profiles", ()))]
-    icy, last = river.loose.any() and columns(run, "bodies") is not None, ends[-1]
+    icy, last = river.loose.any() and columns(run, "bodies") is not None and len(river.tracks.time) > 0, ends[-1]
     found = verdict(river) if icy else None
     told = {"river": tables.profiles_table(river, ends), "reach": tables.reach_table(river, ends)}
     told |= {"ice_balance": tables.balance_table(river)} if icy else {}
@@ -74,7 +78,8 @@ def parts(page: Page) -> str:
             pier_forces(river),
             "Curves of the forces on piers with their percentiles.",
             "Forces on piers along the flow: means of the rows, and from the least to the largest of all steps. Right: "
-            "maximum (dot), 99.9, 99 and 95 % of the amounts of running means; of 0 ms those of the rows' extremes.",
+            "maximum (dot), 99.9, 99 and 95 % of the amounts of running means; of 0 ms those of the rows' extremes; "
+            "windows shorter than the rows are left out, give output.series.",
         ),
         f"<p>Beside this page: {', '.join(f'{name}.csv' for name in told)}.</p>",
     )
@@ -84,17 +89,24 @@ def lines(run: Run) -> list[str]:
     """The jam, for the summary."""
     if not (run.case.get("measure") or {}).get("jam") or columns(run, "bodies") is None:
         return []
-    return _jam(verdict(river_of(run))) if len(run.times("water")) else []
+    try:
+        return _jam(verdict(river_of(run))) if len(run.times("water")) else []
+    except InputError:  # the section tells of it
+        return []
 
 
 def _jam(found: Verdict | None) -> list[str]:
     if found is None:
         return []
+    if not np.isfinite(found.window):
+        return ["Whether there is a jam is not known: before it no water flows down the reach; see measure.before."]
     if found.jam is None:
         return ["No ice jam."]
+    place = f", {found.head:.4g} to {found.toe:.4g} m" if np.isfinite(found.head) else ""
+    thick = f", {found.layers:.2g} floes thick" if np.isfinite(found.layers) else ""
     return [
-        f"Ice jam ({found.kind}) from {found.jam.begin:.4g} to {found.jam.end:.4g} s, {found.head:.4g} to "
-        f"{found.toe:.4g} m, {found.layers:.2g} floes thick: {_LASTS[found.jam.lasts]}."
+        f"Ice jam ({found.kind}) from {found.jam.begin:.4g} to {found.jam.end:.4g} s{place}{thick}: "
+        f"{_LASTS[found.jam.lasts]}."
     ]
 
 
