@@ -142,6 +142,22 @@ def test_a_wave_from_inside_is_let_out():
     assert abs(out.level - 0.1) < 0.03 * rise, "and what runs in is not answered"
 
 
+def test_an_inlet_that_absorbs_gives_way_to_a_wave():
+    """dV = -sqrt(g / h) dh: then none runs back; on the average as much comes in as is asked for."""
+    inlet = simulation(reach({"absorb": 1.0})).solids.openings.inlet
+    inlet.follow(0.1, 1.0, 1e-6)
+    assert inlet.discharge == pytest.approx(0.04)
+    inlet.follow(0.102, 1.0, 1e-6)
+    assert inlet.discharge == pytest.approx(0.04 - 0.1 * math.sqrt(98.1) * 0.002, rel=1e-3)
+    total = 0.0
+    for k in range(20000):
+        inlet.follow(0.1 + 0.002 * math.sin(2e-3 * math.pi * k), 1.0, 1e-3)
+        total += inlet.discharge / 20000
+    assert total == pytest.approx(0.04, rel=0.002)
+    inlet.follow(0.2, 1.0, 1e-6)
+    assert inlet.discharge == 0.0, "nothing goes out"
+
+
 def test_the_water_beyond_goes_along_with_that_before():
     out = simulation(reach()).solids.openings.outlet
     for edge in (0.4, 0.5, 0.5, 0.5):

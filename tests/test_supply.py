@@ -7,6 +7,7 @@ import pytest
 from flows import simulation, tank
 
 from parsim.case import ice
+from parsim.case.estimate import estimate
 from parsim.case.model import parse
 from parsim.errors import InputError
 from parsim.observe.counts import Counts
@@ -62,6 +63,11 @@ def test_a_completed_case_has_its_floes_and_loads_back_equal():
     assert longer.bodies[: len(floes)] == case.bodies, "the same ones first, whatever the end"
     assert parse(reach(seed=6)).bodies[0].shape != case.bodies[0].shape
     assert "up to" in ice.told(case)[0]
+
+
+def test_the_estimate_counts_what_is_there_at_once():
+    few, many = (estimate(parse(reach(until=until))) for until in (2.0, 20.0))
+    assert few.body <= many.body < 1.5 * few.body
 
 
 def test_floes_come_in_afloat_and_nothing_is_lost():

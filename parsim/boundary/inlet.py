@@ -3,7 +3,8 @@
 A *place* is a site of the lattice in y and z. Its k-th particle stands at x = x_in + travel - (k + 1/2) l0, whatever
 was before: position, moment and id of each follow from the travel of its place, which is all that is kept, and no
 particle enters before the last has left. To the water, samples before the side are a boundary that moves with it: their
-pressure is that of the water that they see.
+pressure is that of the water that they see. A wave from inside shows in the level there; the discharge can give way to
+it by so much that none runs back, and is what is asked for on the average.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from parsim.domain.slab import Slab
 
 _LAG = 2.0  # sqrt(H / g), of the level that the inlet follows
+_TRAVELS = 5.0  # H / V, over which the level is averaged that waves are waves on
 _SLACK = 0.25  # spacings by which the level must pass the middle of a row to wake it or send it to sleep
 
 
@@ -51,6 +53,7 @@ class Inlet:
         self._id = sum(lattice_of(case, fill).size for fill in case.water.fill)
         standing = water_at(case.water.fill, self.x + 0.5 * l0, 0.5 * (case.box.min[1] + case.box.max[1]))
         self.level, self.discharge = standing[1] if standing else self._floor, 0.0
+        self._mean = self.level
         count = self._y.size
         self.travel, self.speed = np.zeros(count), np.zeros(count)
         self.first, self.awake = np.zeros(count, np.int64), np.zeros(count, bool)
@@ -66,7 +69,18 @@ class Inlet:
         elif np.isfinite(level):
             self.level += min(dt / self._lag, 1.0) * (level - self.level)
         self.discharge = at_time(self._side.discharge, time) if time >= 0.0 else 0.0
+        if self._side.absorb > 0.0 and time >= 0.0 and np.isfinite(level):
+            self._give_way(level, dt)
         self._flow()
+
+    def _give_way(self, level, dt):
+        """Let a wave out: dV = -sqrt(g / h) dh."""
+        depth, gravity = max(self._mean - self._floor, self._case.spacing), -self._case.gravity[2]
+        area = depth * (1.0 if self._case.dimensions == 2 else self._case.box.size[1])
+        lag = _TRAVELS * depth / max(self.discharge / area, 0.1 * math.sqrt(gravity * depth))
+        self._mean += min(dt / lag, 1.0) * (level - self._mean)
+        gone = self._side.absorb * math.sqrt(gravity / depth) * (level - self._mean) * area
+        self.discharge = max(self.discharge - gone, 0.0)  # nothing goes out here
 
     def _flow(self):
         """Set the speeds, by the discharge. Floes weigh what they displace: where one comes in, water is left out."""
@@ -193,11 +207,11 @@ class Inlet:
             "first": self.first.copy(),
             "awake": self.awake.astype(np.int64),
             "covered": self.covered.astype(np.int64),
-            "inlet": np.array([self.level, self.discharge, self.displaced, self._lost]),
+            "inlet": np.array([self.level, self.discharge, self.displaced, self._lost, self._mean]),
         }
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
         self.travel, self.speed, self.first = (np.array(kept[name]) for name in ("travel", "speed", "first"))
         self.awake, self.covered = np.array(kept["awake"], bool), np.array(kept["covered"], bool)
-        self.level, self.discharge, self.displaced, self._lost = map(float, kept["inlet"])
+        self.level, self.discharge, self.displaced, self._lost, self._mean = map(float, kept["inlet"])

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from parsim.case import places
+from parsim.case.ice_faults import floes_of
 from parsim.geometry.faces import walled_sides
 from parsim.particles.state import water_bytes
 
 RATE = 500_000  # active particle-steps per second and core; `parsim bench` tells that of this machine
 LIST_ROOM = 1.2  # bytes of the neighbour rows over those of the full lattice
 _SHAPES = 200  # shapes of bodies that are looked at, at most
+_CROWDED = 0.5  # concentration of ice whose discharge is given
 _PROBES = 12  # per edge of a body, to see how much of it is in the water
 RANK_BYTES = 300e6  # Python, Numba and its machine code
 _FRAME_BYTES, _BODY_BYTES = 90, 2000  # in a frame: of a particle, of a body
@@ -41,11 +43,12 @@ def estimate(case):
     layers = case.layers
     wet = min(1.0, (case.depth / case.spacing + layers) / (case.box.size[2] / case.spacing))
     water, gate = round(_water(case)), _gate(case, layers)
-    alike = Counter(body.shape for body in case.bodies)
+    bodies = _there(case)
+    alike = Counter(body.shape for body in bodies)
     sampling = case.spacing, layers * case.spacing, case.dimensions == 2
     some = list(alike.items())[:: math.ceil(len(alike) / _SHAPES) or 1]  # the others are taken to be like them
     body = sum(number * shape.number_of_samples(*sampling) for shape, number in some)
-    body = round(body * len(case.bodies) / max(sum(number for _, number in some), 1))
+    body = round(body * len(bodies) / max(sum(number for _, number in some), 1))
     active = water + body + round(gate * wet) + _walls(case, layers, wet)
     dt = time_step(case)
     return Estimate(
@@ -58,6 +61,17 @@ def estimate(case):
         steps=math.ceil((case.run.until - case.start) / dt),
         time_step=dt,
     )
+
+
+def _there(case):
+    """The bodies, and of those that come in as many of each supply as its concentration has on the box at once."""
+    bodies, plan = [body for body in case.bodies if not body.enters], math.prod(case.box.size[:2])
+    for supply in case.ice.supplies:
+        floes = floes_of(case, supply)
+        area = sum(body.shape.volume / (2.0 * body.shape.half[2]) for body in floes)
+        share = min((supply.concentration or _CROWDED) * plan / area, 1.0) if floes else 0.0
+        bodies += floes[: math.ceil(share * len(floes))]
+    return bodies
 
 
 def field_bytes(case):

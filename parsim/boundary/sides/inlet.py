@@ -6,6 +6,7 @@ from pydantic import Field
 
 from parsim.boundary.sides.side import SideTable
 from parsim.case.course import Course
+from parsim.case.types import Share
 from parsim.fluid.profiles import Profile
 
 
@@ -21,5 +22,8 @@ class InletSide(SideTable):
     )
     profile: Profile | None = Field(
         None, description="velocity over the depth, as a share of its mean; left out: the same everywhere"
+    )
+    absorb: Share = Field(
+        0.0, description="share of a wave from inside that is let out, by a discharge that gives way to it for its time"
     )
     continues = True
