@@ -117,16 +117,16 @@ def test_a_supply_by_discharge_begins_and_ends():
 def test_a_blocked_supply_waits_and_says_how_long():
     s = simulation(reach(bodies=[block(0.06)]))
     b = s.bodies
-    while s.time < 0.5:
+    while s.time < 0.45:
         s.step()
     account = row(Ice, s)
     assert account["let_in"] == 1 and account["coming"] == 1, "the first comes to the block, the next finds no room"
     assert account["blocked"] > 0.05 and account["due"] >= 1
     front = b.position[1, 0] + b.shapes[1].half[0]
     assert 0.005 < front < 0.035 and abs(b.velocity[1, 0]) < 0.02, "and it does not push"
-    assert not b.contact_load.any()
+    assert abs(b.contact_load).max() < 1e-9
     near = simulation(reach(bodies=[block(0.03)]))
-    while near.time < 0.3:
+    while near.time < 0.25:
         near.step()
     account = row(Ice, near)
     assert account["let_in"] == 0 and account["blocked"] > 0.05, "within the way in which it stops none begins to come"
@@ -147,13 +147,13 @@ def test_what_passes_the_outlet_is_led_out_level():
 
 
 def test_floes_across_a_channel_keep_apart():
-    s = simulation(reach(across=0.3, shape="polygon", size=0.09, until=0.6))
-    while s.time < 0.3:
+    s = simulation(reach(across=0.18, shape="polygon", size=0.07, until=0.6))
+    while s.time < 0.2:
         s.step()
     b = s.bodies
     there = np.flatnonzero(~b.gone)
-    assert there.size >= 4 and not b.contact_load[there].any()
-    assert (b.position[there, 1] > 0.03).all() and (b.position[there, 1] < 0.27).all()
+    assert there.size >= 3 and abs(b.contact_load[there]).max() < 1e-9, "to rounding"
+    assert (b.position[there, 1] > 0.03).all() and (b.position[there, 1] < 0.15).all()
     turns = 2.0 * np.arctan2(b.quaternion[there, 3], b.quaternion[there, 0])
     assert np.ptp(turns) > 0.5, "turned at random"
     assert row(Counts, s)["in_bodies"] == 0

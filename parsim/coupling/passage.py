@@ -8,7 +8,7 @@ it is to come in: how long is a result. What floats over the outlet is led on wi
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from parsim.case.plans import plan_of
 from parsim.geometry.faces import period
 from parsim.geometry.rotation import from_angles, matrices, turned
 from parsim.ice.draw import evenly
-from parsim.ice.outlines import gaps, joined, outlines
+from parsim.ice.outlines import Outlines, gaps, joined, moved, outlines
 
 if TYPE_CHECKING:
     from parsim.boundary.inlet import Inlet
@@ -35,6 +35,19 @@ _BRAKE = 2.0  # spacings in which one that is led comes to a stop: the water is 
 _NEAR = 0.25  # spacings from what is in its way at which it stands
 
 
+class _Near(NamedTuple):
+    """What is near the inlet: outlines in plan, of which body each is (n,), and its speed along x (n,), m/s."""
+
+    plan: Outlines
+    row: np.ndarray
+    speed: np.ndarray
+
+    def joined(self, other: _Near) -> _Near:
+        """Both."""
+        parts = (np.concatenate(pair) for pair in zip(self[1:], other[1:], strict=True))
+        return _Near(joined(self.plan, other.plan), *parts)
+
+
 class _Queue:
     """The floes of one supply. wanted, given: area or volume so far; blocked, s: in which one found no way in."""
 
@@ -42,12 +55,12 @@ class _Queue:
         number = {body.name: row for row, body in enumerate(case.bodies)}
         bodies = floes_of(case, given)
         self.supply, self.rows = given, [number[body.name] for body in bodies]
-        self.angles = [body.angles for body in bodies]
         self.height = [float(body.position[2]) for body in bodies]
         volumes = [body.shape.volume for body in bodies]
         thick = [2.0 * body.shape.half[2] for body in bodies]
         self.amounts = [supply.amount(given, v / t, t) for v, t in zip(volumes, thick, strict=True)]
         self.next, self.wanted, self.given, self.blocked, self.waits = 0, 0.0, 0.0, 0.0, False
+        self.shapes = [body.shape for body in bodies]
 
     @property
     def due(self) -> bool:
@@ -104,68 +117,78 @@ class Passage:
         through = b.position[coming, 0] - b.reaches()[coming, 0] >= self._inlet.x + _INSIDE * self._case.spacing
         b.lead[coming[through]] = math.nan
         coming = coming[~through].tolist()
+        due = [queue for queue in self.queues if queue.due] if time >= 0.0 else []
+        near = self._near() if coming or due else None
         for row in coming:
-            self._goal[row] = 0.0 if self._stopped(self._place(row), row) else self._inlet.surface_speed
-        for queue in self.queues if time >= 0.0 else ():
+            others = near.row != row
+            self._goal[row] = 0.0 if self._stopped(near.plan.take(~others), near, others) else self._inlet.surface_speed
+        for queue in self.queues:
             queue.waits = False
+        for queue in due:
             while queue.due and not queue.waits:
-                queue.waits = not self._enters(queue, time)
-                coming += [] if queue.waits else [queue.rows[queue.next - 1]]
+                queue.waits = not self._enters(queue, near, time)
+                if not queue.waits:
+                    coming.append(queue.rows[queue.next - 1])
+                    near = near.joined(self._seen(coming[-1]))
         self._inlet.cover([self._place(row) for row in coming])
+
+    def _near(self):
+        """What is there near the inlet at the height of floes that come in."""
+        b, l0 = self._bodies, self._case.spacing
+        rows = [row for queue in self.queues for row in queue.rows]
+        reach = 2.0 * b.radius[rows].max() + 2.0 * _BRAKE * l0
+        thick = max(2.0 * shape.half[2] for queue in self.queues for shape in queue.shapes) + l0
+        found = _Near(outlines([], []), np.zeros(0, int), np.zeros(0))
+        for row in np.flatnonzero(~b.gone & (b.position[:, 0] - b.radius < self._inlet.x + reach)):
+            there = self._place(row)
+            if there.low()[2] < self._inlet.level + thick and there.high()[2] > self._inlet.level - thick:
+                found = found.joined(self._seen(row))
+        return found
+
+    def _seen(self, row):
+        """A body as it is seen near the inlet; across sides that repeat where its place leads back into the box."""
+        around = self._length * np.floor((self._bodies.position[row] - self._case.box.min) / self._period)
+        plan = plan_of(self._place(row, around), self._inlet.level - 2.0 * self._bodies.radius[row])
+        count = len(plan.cx)
+        return _Near(plan, np.full(count, row), np.full(count, self._bodies.velocity[row, 0]))
 
     def _place(self, row, around=0.0):
         b = self._bodies
         return Place(b.position[row] - around, matrices(b.quaternion[row : row + 1])[0], b.shapes[row])
 
-    def _plans(self, place, but):
-        """(Outlines of all that is there beside a body at a `place`, at its height, but a row; their speeds, m/s)."""
-        b, low, high, gap = self._bodies, place.low(), place.high(), self._case.spacing
-        found, speeds = outlines([], []), []
-        for row in np.flatnonzero(~b.gone & (np.arange(len(b)) != but)):
-            around = self._length * np.rint((b.position[row] - place.centre) / self._period)
-            if (abs(b.position[row] - around - place.centre) > b.radius[row] + place.reach + 4.0 * gap).any():
-                continue
-            there = self._place(row, around)
-            if there.low()[2] < high[2] + gap and there.high()[2] > low[2] - gap:
-                plan = plan_of(there, low[2] - gap)
-                found = joined(found, plan)
-                speeds += [b.velocity[row, 0]] * len(plan.cx)
-        return found, np.array(speeds)
-
-    def _stopped(self, place, row):
-        """Whether something slower is in the way of a floe that comes in, so near that it has to come to a stop."""
-        l0, speed = self._case.spacing, self._inlet.surface_speed
-        others, speeds = self._plans(place, row)
-        if not len(speeds) or speed <= 0.0:
+    def _stopped(self, own, near, which):
+        """Whether something slower among `which` is in the way of a floe that comes in, so near that it has to stop."""
+        l0, speed, at = self._case.spacing, self._inlet.surface_speed, np.flatnonzero(which)
+        if not at.size or speed <= 0.0:
             return False
-        own = plan_of(place, -math.inf).take(np.zeros(len(speeds), int))
-        ahead = (_BRAKE + _NEAR) * l0 * np.clip(1.0 - speeds / speed, 0.0, 1.0)
+        own, others = own.take(np.zeros(at.size, int)), near.plan.take(at)
+        ahead = (_BRAKE + _NEAR) * l0 * np.clip(1.0 - near.speed[at] / speed, 0.0, 1.0)
         then = gaps(own._replace(x=own.x + ahead[:, None], cx=own.cx + ahead), others).apart
         return bool(((then < _NEAR * l0) & (then < gaps(own, others).apart)).any())
 
-    def _enters(self, queue, time):
+    def _enters(self, queue, near, time):
         """Let the next floe of a queue come in where there is room before the inlet; whether there is."""
         b, k, case = self._bodies, queue.next, self._case
-        row, gap = queue.rows[k], queue.supply.apart(case)
+        row, gap, every = queue.rows[k], queue.supply.apart(case), np.ones(len(near.row), bool)
         key = queue.supply.seed, queue.supply.stream, k + 1
-        z = queue.height[k] + self._inlet.level - self._level
+        flat = plan_of(Place(np.zeros(3), np.eye(3), queue.shapes[k]), -math.inf)
         dice = evenly(key, _POSES, 2 * _TRIES)
         for across, around in zip(dice[::2], dice[1::2], strict=True):
-            turn = 0.0 if case.dimensions == 2 else 360.0 * around
-            x, y, _ = queue.angles[k]
-            quaternion = np.array(turned(from_angles((x, y, turn)), b.shapes[row].turn))
-            place = Place(np.zeros(3), matrices(quaternion[None])[0], b.shapes[row])
-            low, high = place.low(), place.high()
-            left, right = case.box.min[1] + gap - low[1], case.box.max[1] - gap - high[1]
+            turn = 0.0 if case.dimensions == 2 else 2.0 * math.pi * around
+            at, heading = np.zeros(1), (np.array([math.cos(turn)]), np.array([math.sin(turn)]))
+            _, low, front, high = (float(end[0]) for end in moved(flat, at, at, *heading).extents())
+            left, right = case.box.min[1] + gap - low, case.box.max[1] - gap - high
             if case.dimensions == 3 and left > right:
                 continue
-            middle = 0.5 if case.dimensions == 2 else left + across * (right - left)
-            place = Place(np.array([self._inlet.x - gap - high[0], middle, z]), place.axes, place.shape)
-            others, speeds = self._plans(place, row)
-            own = plan_of(place, -math.inf).take(np.zeros(len(speeds), int))
-            if (gaps(own, others).apart < gap).any() or self._stopped(place, row):
+            x = self._inlet.x - gap - front
+            y = 0.5 if case.dimensions == 2 else left + across * (right - left)
+            own = moved(flat, np.array([x]), np.array([y]), *heading)
+            apart = gaps(own.take(np.zeros(len(near.row), int)), near.plan).apart
+            if (apart < gap).any() or self._stopped(own, near, every):
                 continue
-            b.bring_in(row, place.centre, quaternion, time)
+            place = np.array([x, y, queue.height[k] + self._inlet.level - self._level])
+            quaternion = turned(from_angles((0.0, 0.0, math.degrees(turn))), queue.shapes[k].turn)
+            b.bring_in(row, place, quaternion, time)
             b.lead[row] = b.velocity[row, 0] = self._goal[row] = self._inlet.surface_speed
             queue.next, queue.given = k + 1, queue.given + queue.amounts[k]
             return True
