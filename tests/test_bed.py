@@ -133,6 +133,8 @@ def test_a_body_in_the_bed_is_refused_and_one_over_it_is_not(tmp_path):
     (tmp_path / "case.toml").write_text(CASE + block % "0.36")
     with pytest.raises(InputError, match="overlaps bodies.a by 0.0"):
         load(tmp_path / "case.toml")
+    (tmp_path / "case.toml").write_text(CASE + block % "0.36" + "fixed = true\n")
+    assert len(load(tmp_path / "case.toml").bodies) == 2, "a pier"
 
 
 def test_what_was_filled_and_what_is_too_fine_are_doubts(tmp_path):

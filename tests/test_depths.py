@@ -9,6 +9,8 @@ from flows import WOOD, simulation, tank
 from parsim.fluid import turbulence
 from parsim.fluid.friction import KAPPA
 from parsim.fluid.turbulence import Depths, Length
+from parsim.observe.counts import Counts
+from parsim.particles.state import BODY
 
 EDDIES = {"friction": {"kind": "wall_law", "roughness": 0.001}, "eddies": {"kind": "mixing_length"}}
 
@@ -21,6 +23,10 @@ def body(name, x, z, size, **changes):
 def pond(*bodies, **friction):
     water = EDDIES | {"friction": EDDIES["friction"] | friction}
     return simulation(tank(0.8, 0.3, 0.01, fill=(0.8, 0.2), **water) | {"materials": WOOD, "bodies": list(bodies)})
+
+
+def row_of(observer, s):
+    return dict(zip((column.name for column in observer.columns), observer(s.case).rows(s)[0], strict=True))
 
 
 def test_columns_reach_from_the_bottom_to_the_surface_or_to_ice():
@@ -41,6 +47,25 @@ def test_columns_reach_from_the_bottom_to_the_surface_or_to_ice():
     assert depths.covered[within["ice"]].all() and depths.top[within["ice"]] == pytest.approx(0.16, abs=1e-9)
     assert depths.bottom[within["sill"]] == pytest.approx(0.06, abs=1e-9)
     assert depths.covered[within["sunk"]].all() and depths.top[within["sunk"]] == pytest.approx(0.08, abs=1e-9)
+
+
+def test_fixed_bodies_may_stand_in_each_other():
+    """A pier in a sill: nobody is sampled twice, nothing is missing, and the water beside stays at rest."""
+    s = pond(
+        body("pier", 0.5, 0.13, [0.04, 1.0, 0.26], fixed=True), body("sill", 0.5, 0.03, [0.2, 1.0, 0.06], fixed=True)
+    )
+    p = s.domain.particles
+    at = np.flatnonzero(p.kind == BODY)
+    places = np.stack([p.x[at], p.z[at]], axis=1)
+    apart = np.sqrt(((places[:, None] - places[None]) ** 2).sum(2)) + np.eye(at.size)
+    assert apart.min() > 0.0099
+    holes = np.stack(np.meshgrid(np.arange(0.41, 0.6, 0.01), np.arange(0.035, 0.055, 0.01)), -1).reshape(-1, 2)
+    assert np.sqrt(((holes[:, None] - places[None]) ** 2).sum(2)).min(axis=1).max() < 0.0075
+    while s.time < 0.2:
+        s.step()
+    at = s.near.fluid
+    assert np.sqrt(p.u[at] ** 2 + p.w[at] ** 2).max() < 0.02 and row_of(Counts, s)["in_bodies"] == 0
+    assert s.bodies.water_load[:, 0] == pytest.approx(0.0, abs=0.5)
 
 
 def test_what_does_not_rub_covers_nothing():

@@ -33,9 +33,10 @@ class BodySamples:
     """Even samplings of all bodies at about the spacing, down to a support below their surface.
 
     Each sample carries its share of the volume of its body (`shapes.shape.Samples`), and is placed from the pose, never
-    integrated. `here`: numbers of those that lay in this slab when last asked for. `units` (8, 6) are those of the sums
-    in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the `Samples` of each body. Bodies cross
-    periodic sides: their places go on beyond, and `shift` (particles, 3), m, leads from there to where a sample is.
+    integrated. `here`: numbers of those that lay in this slab when last asked for; `seen` (n,): whether water may see
+    one. `units` (8, 6) are those of the sums in `loads`, by their rows for one body: see `Domain.sum`. `of_body`: the
+    `Samples` of each body. Bodies cross periodic sides: their places go on beyond, and `shift` (particles, 3), m, leads
+    from there to where a sample is.
     """
 
     def __init__(self, case, bodies, layers, units):
@@ -47,6 +48,7 @@ class BodySamples:
         self.offsets = np.concatenate([np.zeros((0, 3)), *(s.offsets for s in self.of_body)])
         self.scale = np.concatenate([np.zeros(0), *(s.shares for s in self.of_body)])
         self.body = np.repeat(np.arange(len(bodies), dtype=np.int32), [len(s.offsets) for s in self.of_body])
+        self.seen = np.ones(len(self), bool)
 
     def __len__(self):
         return len(self.offsets)
@@ -73,8 +75,8 @@ class BodySamples:
         return out
 
     def _located(self, which):
-        """Numbers (n,) of the samples of `which` bodies (bodies,) bool, and where they are now: three arrays (n,)."""
-        at = np.flatnonzero(which[self.body])
+        """Numbers (n,) of the samples that may be seen of `which` bodies (bodies,) bool, and their places (3, n)."""
+        at = np.flatnonzero(which[self.body] & self.seen)
         place = Vectors(*np.empty((3, at.size)))
         locate(self.offsets[at], self.body[at], self.bodies.position, matrices(self.bodies.quaternion), place)
         return at, place

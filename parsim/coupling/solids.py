@@ -5,6 +5,7 @@ import numpy as np
 from parsim.boundary.gate import Gate, GateSamples
 from parsim.boundary.wall_samples import Walls
 from parsim.case.scales import power_of_two, scales
+from parsim.coupling.buried import buried
 from parsim.coupling.depths import Columns
 from parsim.coupling.films import Films
 from parsim.coupling.friction import Friction, Rubbing
@@ -27,6 +28,7 @@ class Solids:
         self.timers, self._scales = timers, scales(case)
         self.bodies = from_case(case)
         self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
+        self.samples.seen = ~buried(self.bodies, self.samples)
         self.films = Films(case, self.bodies, self.samples, lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
