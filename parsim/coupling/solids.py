@@ -103,7 +103,7 @@ class Solids:
         domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
         force, lever, response = reaction
         plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)
-        added = self.films.loads(domain, near, plate, *pose)
+        added = self.films.loads(domain, near, plate, *pose, flow.gravity)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
         self.films.keep(*rims)
         self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt), flow.gravity)

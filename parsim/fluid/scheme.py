@@ -7,7 +7,7 @@ class Flow(NamedTuple):
     """The water: `Particles`, `Neighbours`, `Domain` (refreshing, sum, count, max); no rank, no case, no body.
 
     speed, m/s: the largest of anything; keep: the share of velocity kept in this step, less than 1 while it settles;
-    gravity, m/s2: what pulls in this step.
+    gravity, m/s2: what pulls in this step; turning: how the box turns (`coupling.moving.Turning`), or None.
     """
 
     particles: object
@@ -16,6 +16,7 @@ class Flow(NamedTuple):
     speed: float = 0.0
     keep: float = 1.0
     gravity: tuple = (0.0, 0.0, 0.0)
+    turning: object = None
 
 
 class Solids(Protocol):
