@@ -61,7 +61,7 @@ class Pull:
         self._integral += dt * lag / (_INTEGRAL * self._channel.relaxation * self._channel.relaxation)
 
     def count(self, flow: Flow, bodies: Bodies, mass: float, time: float, dt: float) -> None:
-        """Count the work of the box that moves in the step of dt, s, that ended at `time`, s; `mass` of a particle, kg."""
+        """Count the work of a box that moves in a step of dt, s, that ended at `time`, s; `mass` of a particle, kg."""
         if not self.moving:
             return
         p, at = flow.particles, flow.near.fluid

@@ -12,6 +12,7 @@ from parsim.observe.fluxes import Fluxes
 from parsim.observe.forces import Forces
 from parsim.observe.front import Front
 from parsim.observe.gauges import Gauges
+from parsim.observe.levels import Levels
 from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 # what is seen at a time; what has left is told at once
 OBSERVERS = (
-    Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings, Peaks,
+    Energy, Counts, Bodies, Loads, Gauges, Levels, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings, Peaks,
 )  # fmt: skip
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}
