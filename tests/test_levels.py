@@ -56,7 +56,7 @@ def test_the_page_draws_it():
     from parsim.report.sections.gauges import levels
 
     time, distance = np.repeat([0.0, 0.1, 0.2], 4), np.tile(np.linspace(0.0, 0.3, 4), 3)
-    columns = {"step": time, "line": np.full(12, "along"), "time": time, "distance": distance, "level": 0.1 + 0.0 * time,
-               "piezometric": 0.1 + 0.0 * time}  # fmt: skip
+    columns = {"step": time, "line": np.full(12, "along"), "time": time, "distance": distance}
+    columns |= {"level": 0.1 + 0.0 * time, "piezometric": 0.1 + 0.0 * time}
     drawn = levels(SimpleNamespace(series_names=["levels"], series=lambda name: columns))
     assert len(drawn.axes) == 1 and len(drawn.axes[0].lines) == 6

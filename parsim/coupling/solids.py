@@ -94,6 +94,15 @@ class Solids:
         """The same as it was found last."""
         return Rubbing(slip_of(p), self.friction.share) if self.friction else None
 
+    def sliding(self):
+        """Samples of this rank, of sides that move; none if nothing does."""
+        return self.friction.sliding if self.friction and self.friction.slides else None
+
+    def slide(self, flow, force, dt):
+        """Account for the work that sides do on the water, whose friction on `sliding` is `force`, N, in `dt`, s."""
+        power = self.friction.power(force)[:, None]
+        self.contacts.driven_work += dt * float(flow.domain.sum(power, self._scales.energy / self._scales.time)[0])
+
     def pushed(self):
         """Whether there is water, and bodies for it to push."""
         return self._wet and len(self.bodies) > 0

@@ -34,6 +34,12 @@ class Solids(Protocol):
     def rub(self, flow):
         """What the water feels of the friction of walls and bodies, slip and share of samples; None where none rubs."""
 
+    def sliding(self):
+        """Samples of walls that move in their own planes, (n,); None where none do."""
+
+    def slide(self, flow, force, dt):
+        """Note what these do on the water in dt, s: `force` (n, 3), N, is its friction on them."""
+
     def pushed(self):
         """Whether there is anything that the water can push."""
 

@@ -52,7 +52,9 @@ class Levels:
             values.append(np.stack([p.z[here] + p.p[here] / self._head, np.ones(here.size)], axis=1))
             index.append(np.full(here.size, k))
         top = np.array(s.domain.max(*top))
-        total, number = s.domain.sum(np.concatenate(values), [self._unit, 1.0], np.concatenate(index), count).T
+        total, number = s.domain.sum(
+            np.concatenate(values), np.array([self._unit, 1.0]), np.concatenate(index), count
+        ).T
         there = (number > 0.0) & (s.step_count > 0)  # at the start there are no pressures yet
         head = np.where(there, total / np.where(there, number, 1.0), np.nan)
         level = np.where(np.isfinite(top), top + 0.5 * self._spacing, np.nan)

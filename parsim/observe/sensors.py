@@ -1,18 +1,13 @@
 """What a case may say of a place where something is measured: one table for each kind, listed at the end."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
 from parsim.case.friction import FaceName
 from parsim.case.types import Count, Name, Number, Positive, Table, Vector, choice
 from parsim.observe.filters import Filter
-
-if TYPE_CHECKING:
-    from parsim.case.model import Case
 
 
 class Gauge(Table):
@@ -35,7 +30,7 @@ class Levelling(Table):
     end: tuple[Number, Number] = Field(description="last point, x and y, m")
     points: Annotated[Count, Field(ge=2, le=10000)] = Field(description="number of points, the ends with them")
 
-    def faults(self, case: Case) -> Iterator[str]:
+    def faults(self, case: Any) -> Iterator[str]:
         """What is wrong with it in a completed case: messages, after the name of the sensor."""
         for key, place in (("start", self.start), ("end", self.end)):
             for axis in case.axes[:-1]:

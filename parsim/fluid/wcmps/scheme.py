@@ -106,6 +106,8 @@ class WCMPS:
             solids.hold(flow, self.at_rest)
         self._press(p, near, flow)
         rubbing = solids.rub(flow)
+        if (sliding := solids.sliding()) is not None:
+            solids.slide(flow, self.rubbed(flow, solids, sliding), dt)
         with self.timers("bodies"):
             if solids.pushed():
                 solids.push(flow, self._react(p, near, near.body, dt, rubbing), time, dt)
