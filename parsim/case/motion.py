@@ -110,9 +110,6 @@ def faults(case):
         kind = getattr(case.box.faces, name).kind
         if kind in ("inlet", "outlet") or (kind == "periodic" and motion.kind == "roll" and name[0] != "y"):
             out.append(f'motion.kind = "{motion.kind}": box.faces.{name} = "{kind}": must be a wall or open')
-    free = [body.name for body in case.bodies if not body.fixed]
-    if free and motion.kind == "roll":
-        out.append(f'motion.kind = "roll": bodies.{free[0]}: must be fixed; bodies that are free go with "sway" only')
     return out
 
 

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from parsim.geometry.rotation import matrices
 from parsim.particles.tables import Vectors
 
 if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.particles.state import Particles
+    from parsim.solid.bodies import Bodies
 
 
 class Turning(NamedTuple):
@@ -43,6 +45,21 @@ class Turning(NamedTuple):
         w = p.w[at] + 0.5 * dt * (az + gravity[2])
         p.ax[at], p.az[at] = ax - 2.0 * self.rate * w, az + 2.0 * self.rate * u
 
+    def load(self, b: Bodies, ahead: float) -> np.ndarray:
+        """What each body feels `ahead` s on from where it is, Coriolis' too: force, N, and torque, N m, (bodies, 6).
+
+        With S the integral of r r^T over the mass, Omega the turning and omega the spin, the torque is
+        -I dOmega/dt - (S Omega) x (2 omega + Omega).
+        """
+        (x, _, z), (u, _, w) = (b.position + ahead * b.velocity).T, (b.velocity + ahead * b.acceleration).T
+        (ax, az), out, turn = self.felt(x, z), np.zeros((len(b), 6)), matrices(b.quaternion)
+        out[:, 0], out[:, 2] = b.mass * (ax - 2.0 * self.rate * w), b.mass * (az + 2.0 * self.rate * u)
+        about = np.einsum("bij,bj,bj->bi", turn, b.inertia, turn[:, 1])  # I along y
+        spread = 0.5 * b.inertia.sum(axis=1)[:, None] * (0.0, 1.0, 0.0) - about
+        both = 2.0 * (b.spin + ahead * b.angular_acceleration) + np.array([0.0, self.rate, 0.0])
+        out[:, 3:] = -self.growth * about - self.rate * np.cross(spread, both)
+        return out
+
 
 class Moving:
     """How the box of a case moves: a function of time alone."""
@@ -70,11 +87,19 @@ class Moving:
         about = self._motion.about
         return Turning(about[0], about[2], *self._course(time)[1:])
 
-    def power(self, time: float, place: tuple[np.ndarray, ...], velocity: tuple[np.ndarray, ...]) -> np.ndarray:
-        """Work, W/kg, that all but the gravity of the case does on what moves in the box at a time, s: (n,)."""
+    def power(self, time: float, place: Vectors, velocity: Vectors) -> np.ndarray:
+        """Work, W/kg, that all but the gravity of the case does on water in the box at a time, s: (n,)."""
         x, y, z = np.subtract(self.gravity(time), self._gravity).tolist()
         turning = self.turning(time)
         if turning:
-            ax, az = turning.felt(place[0], place[2])
+            ax, az = turning.felt(place.x, place.z)
             x, z = ax + x, az + z
-        return x * velocity[0] + y * velocity[1] + z * velocity[2]
+        return x * velocity.x + y * velocity.y + z * velocity.z
+
+    def power_on(self, time: float, bodies: Bodies) -> np.ndarray:
+        """The same on bodies, W, (bodies,)."""
+        load, turning = np.zeros((len(bodies), 6)), self.turning(time)
+        load[:, :3] = bodies.mass[:, None] * np.subtract(self.gravity(time), self._gravity)
+        if turning:
+            load += turning.load(bodies, 0.0)
+        return (load * np.hstack([bodies.velocity, bodies.spin])).sum(axis=1)

@@ -9,6 +9,7 @@ import numpy as np
 from parsim.case.course import at_time
 from parsim.case.scales import gravity_at, scales
 from parsim.coupling.moving import Moving
+from parsim.particles.tables import Vectors
 
 if TYPE_CHECKING:
     from parsim.case.model import Case
@@ -65,10 +66,10 @@ class Pull:
         if not self.moving:
             return
         p, at = flow.particles, flow.near.fluid
-        place, velocity = ([part[at] for part in parts] for parts in (p.place, p.velocity))
+        place, velocity = (Vectors(*(part[at] for part in parts)) for parts in (p.place, p.velocity))
         power = float(flow.domain.sum(mass * self.moving.power(time, place, velocity)[:, None], self._watt)[0])
         free = ~(bodies.held(time) | bodies.gone)
-        power += float((bodies.mass * self.moving.power(time, bodies.position.T, bodies.velocity.T))[free].sum())
+        power += float(self.moving.power_on(time, bodies)[free].sum())
         self.work += 0.5 * dt * (self._power + power)
         self._power = power
 

@@ -37,7 +37,7 @@ class Solids:
         self.openings = Openings(case, layers)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._wet = case.water.scheme.WET
-        self._load = np.zeros((len(self.bodies), 6))  # of the water in this step
+        self._load, self._felt = np.zeros((2, len(self.bodies), 6))  # of the water, and of a box that turns
 
     @property
     def sources(self):
@@ -115,6 +115,7 @@ class Solids:
         added = self.films.loads(domain, near, plate, *pose, flow.gravity)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
         self.films.keep(*rims)
+        load += self._turn(flow, dt)
         self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt), flow.gravity)
 
     def driven(self, time):
@@ -133,12 +134,21 @@ class Solids:
                 with self.timers("move"):
                     self.samples.keep_out(flow.particles, flow.near, *self.bodies.drifted(0.5 * dt))
             with self.timers("contacts"):
-                self.contacts.step(self.bodies, self._load, time, dt)
+                self.contacts.step(self.bodies, self._load if self._wet else self._turn(flow, dt), time, dt)
+                if flow.turning:
+                    self.bodies.water_load -= self._felt
+                    self.bodies.gravity_load += self._felt
                 self.bodies.velocity *= flow.keep
                 self.bodies.spin *= flow.keep
         with self.timers("bodies"):
             self._place(flow.particles, self.bodies.position, self.bodies.quaternion, time + dt)
             self.openings.advance(flow.particles, dt)
+
+    def _turn(self, flow, dt):
+        """Find what bodies feel of a box that turns besides gravity, (bodies, 6), N and N m, in a step of dt, s."""
+        if flow.turning:
+            self._felt = flow.turning.load(self.bodies, 0.5 * dt)
+        return self._felt
 
     def _place(self, p, position, quaternion, time):
         if self.gate:
