@@ -44,6 +44,7 @@ sensors = [
     {kind = "flux", name = "through", x = 0.1},
     {kind = "velocity", name = "line", x = 0.1, width = 0.05},
     {kind = "load", name = "push", body = "floe"},
+    {kind = "levels", name = "along", start = [0.0, 0.0], end = [0.2, 0.0], points = 5},
 ]
 """
 
@@ -69,7 +70,7 @@ def test_every_column_has_rows_of_one_length_and_one_unit(run, name):
     assert list(series) == list(units) and len(series["step"]) > 3
     assert {len(values) for values in series.values()} == {len(series["step"])}
     texts = {column for column, values in series.items() if values.dtype.kind == "U"}
-    assert texts <= {"body", "kind", "gauge", "what", "probe", "patch", "section", "line", "sensor"}
+    assert texts <= {"body", "kind", "gauge", "what", "probe", "patch", "section", "line", "sensor", "filter"}
     assert all(units[column] == "-" for column in texts | {"step"}) and units["time"] == "s"
 
 

@@ -95,11 +95,10 @@ def test_too_many_ranks_are_refused_with_the_number_that_fits(mpirun, tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "whole", "part", "kinds"), [
     ("shapes", "0.15", "0.08", {"contact", "joint"}), ("periodic", "0.15", "0.07", {"contact", "water_friction"}),
-    ("openings", "0.2", "0.11", {"water_friction"}),
+    ("openings", "0.2", "0.11", {"water_friction"}), ("sway", "0.1", "0.06", {"water"}),
+    ("roll", "0.2", "0.12", {"water_friction"}),
 ])  # fmt: skip
-def test_shapes_joints_periodic_sides_and_openings_have_the_same_bits(
-    name, whole, part, kinds, mpirun, tmp_path, capsys
-):
+def test_shapes_joints_sides_and_boxes_that_move_have_the_same_bits(name, whole, part, kinds, mpirun, tmp_path, capsys):
     """On one rank, on three, and in two pieces on two and one."""
     case = tmp_path / "case.toml"
     case.write_text((HERE / f"same_bits_{name}.toml").read_text())

@@ -32,8 +32,8 @@ def still(*sensors, **changes):
 def test_a_probe_reads_the_pressure_of_the_depth(place):
     x, z = place
     s = still({"kind": "pressure", "name": "a", "x": x, "z": z})
-    ((name, *where, pressure),) = Probes(s.case).rows(s)
-    assert name == "a" and where == [x, 0.5, z]
+    ((name, told, *where, pressure),) = Probes(s.case).rows(s)
+    assert (name, told) == ("a", "none") and where == [x, 0.5, z]
     assert pressure == pytest.approx(1000.0 * GRAVITY * (DEPTH - z), abs=0.01 * 1000.0 * GRAVITY * DEPTH)
 
 
@@ -49,7 +49,7 @@ def test_a_probe_moves_with_its_body():
     s.bodies.position[0] += (0.05, 0.0, 0.0)
     half = math.radians(30.0) / 2.0
     s.bodies.quaternion[0] = (math.cos(half), 0.0, -math.sin(half), 0.0)
-    ((_, x, _, z, _),) = probes.rows(s)
+    ((_, _, x, _, z, _),) = probes.rows(s)
     down = 0.08 - s.bodies.position[0, 2]
     turned = (
         0.02 * math.cos(2 * half) - down * math.sin(2 * half),
@@ -65,7 +65,7 @@ def test_walls_carry_the_water():
         {"kind": "force", "name": "half", "wall": "z_min", "min": [0.0, 0.0, 0.0], "max": [0.2, 0.0, 0.0]},
     ]
     s = still(*sensors)
-    rows = {(name, kind): force for name, kind, *force in Forces(s.case).rows(s)}
+    rows = {(name, kind): force for name, _, kind, *force in Forces(s.case).rows(s)}
     weight = 1000.0 * GRAVITY * DEPTH * 0.4
     assert rows["floor", "pressure"] == pytest.approx([0.0, 0.0, -weight], rel=0.01, abs=1e-9)
     assert rows["half", "pressure"][2] == pytest.approx(-0.5 * weight, rel=0.01)
@@ -93,7 +93,7 @@ def test_a_stream_is_seen_as_it_flows():
     assert [z for _, z, *_ in rows] == pytest.approx(np.arange(0.005, DEPTH, 0.01))
     assert {number for *_, number in rows} == {10}
     assert [u for _, _, u, *_ in rows] == pytest.approx([0.5] * 10, rel=5e-3)
-    bed = next(force for _, kind, *force in Forces(s.case).rows(s) if kind == "friction")
+    bed = next(force for _, _, kind, *force in Forces(s.case).rows(s) if kind == "friction")
     assert bed[0] == pytest.approx(s.solids.friction.stress[:, 0].sum(), rel=1e-4) and bed[0] > 0.1
 
 

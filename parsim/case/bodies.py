@@ -8,7 +8,7 @@ from parsim.case import places
 from parsim.case.fill import TOUCH, water_at
 from parsim.errors import nearest, suggestion
 from parsim.geometry.faces import names_of_walls, period, repeats, walled_sides
-from parsim.observe.sensors import Gauge, Load
+from parsim.observe.sensors import Gauge, Levelling, Load
 
 PASSAGE = 3.0  # spacings: through less, water flows too slowly (2D, levels 0.2 m apart)
 
@@ -220,6 +220,7 @@ def sensors(case):
             for k, axis in enumerate("xyz")
             if (value := getattr(sensor, axis, None)) is not None and not case.box.min[k] <= value <= case.box.max[k]
         ]
+        out += [f"{key}.{text}" for text in sensor.faults(case)] if isinstance(sensor, Levelling) else []
         wall, body = getattr(sensor, "wall", None), getattr(sensor, "body", None)
         if wall is not None and wall not in names_of_walls(case):
             out.append(f'{key}.wall = "{wall}": is no wall of this case')

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from parsim.case import bed, bodies, channel, friction, ice, measure, openings, places, repeats
+from parsim.case import bed, bodies, channel, friction, ice, measure, motion, openings, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -31,7 +31,7 @@ def checked(case, messages):
         bodies.sensors,
     )
     of_water = _water, fills.faults, friction.faults, channel.faults, openings.faults, _speed
-    for check in (_spacing, _box, _faces, *of_water, _ramp, measure.faults, *of_bodies):
+    for check in (_spacing, _box, _faces, *of_water, _ramp, motion.faults, measure.faults, *of_bodies):
         faults += check(case)
     if messages or faults:
         raise InputError([*messages, *faults])

@@ -31,8 +31,9 @@ def locate(data, folder):
     study, ice, box = (data.get(name) for name in ("study", "ice", "box"))
     if isinstance(study, dict) and isinstance(study.get("table"), str):
         study["table"] = str((folder / study["table"]).resolve())
-    if isinstance(data.get("channel"), dict):
-        read_courses(data["channel"], folder, "channel")
+    for name in ("channel", "motion"):
+        if isinstance(data.get(name), dict):
+            read_courses(data[name], folder, name)
     faces = box.get("faces") if isinstance(box, dict) else None
     for name, side in faces.items() if isinstance(faces, dict) else ():
         if isinstance(side, dict):

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from parsim.case.types import NotNegative, Real, Switch, Table
-from parsim.geometry.faces import names_of_walls
+from parsim.geometry.faces import names_of_walls, velocities_of_walls
 
 FaceName = Literal["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
 
@@ -37,7 +37,11 @@ class Eddies(Table):
 
 def faults(case):
     """What is wrong with the friction of a completed case: messages."""
-    out, friction, own = [], case.water.friction, [n for n, m in case.materials.items() if m.roughness is not None]
+    out, friction, own = (
+        [*_sliding(case)],
+        case.water.friction,
+        [n for n, m in case.materials.items() if m.roughness is not None],
+    )
     if not case.water.scheme.WET:
         given = [f"water.{name}" for name in ("friction", "eddies") if getattr(case.water, name) is not None]
         return [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
@@ -55,6 +59,24 @@ def faults(case):
     wrong = [name for name in friction.walls or () if name not in walls]
     allowed = ", ".join(walls) or "none"
     return out + [f'water.friction.walls = "{name}": is no wall; allowed: {allowed}' for name in wrong]
+
+
+def _sliding(case):
+    """What is wrong with sides that move."""
+    friction, walls = case.water.friction, names_of_walls(case)
+    free = [body.name for body in case.bodies if not body.fixed]
+    for name, velocity in zip(walls, velocities_of_walls(case).tolist(), strict=True):
+        key, across = f"box.faces.{name}.velocity = {velocity}", "xyz".index(name[0])
+        if any(velocity) and velocity[across] != 0.0:
+            yield f"{key}: {name[0]} must be 0; a side moves in its own plane"
+        elif any(velocity) and case.dimensions == 2 and velocity[1] != 0.0:
+            yield f"{key}: y must be 0 in a 2D case"
+        elif any(velocity) and (friction is None or name not in (friction.walls or walls)):
+            yield f"{key}: nothing feels it; water.friction is missing, or this side is not in its walls"
+        elif any(velocity) and free:
+            yield f"{key}: bodies.{free[0]}: must be fixed; contacts do not feel that a side moves"
+        elif math.hypot(*velocity) > case.speed:
+            yield f"{key}: is more than the largest expected speed, {case.speed:.4g} m/s; give water.speed"
 
 
 def doubts(case):

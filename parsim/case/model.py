@@ -21,6 +21,7 @@ from parsim.case.friction import Eddies, Friction
 from parsim.case.ice import Ice
 from parsim.case.measure import Measure
 from parsim.case.messages import validated
+from parsim.case.motion import Motion
 from parsim.case.output import Output, Report
 from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
 from parsim.fluid import DEFAULT, Scheme
@@ -153,6 +154,9 @@ class Case(Table):
     water: Water = Field(Water(), description="the water and its scheme")
     bed: Bed | None = Field(None, description="ground from a file over the whole box; left out: none")
     channel: Channel | None = Field(None, description="a discharge that is held between periodic sides; left out: none")
+    motion: Motion | None = Field(
+        None, description="how the box moves; all else is seen from the box; left out: it stands"
+    )
     gate: Gate | None = Field(None, description="a plate that rises; left out: none")
     contacts: Contacts = Field(Contacts(), description="how bodies touch")
     run: Run = Field(description="how long and in what steps")

@@ -72,8 +72,7 @@ class Films:
         self._layer, self._deep = _layers(lattice)
         self._planes = planes_of_walls(case)
         self._period = period(case)
-        # water that goes round has no head along its way
-        self._head = np.where(np.isinf(self._period), case.water.density * np.array(case.gravity), 0.0)
+        self._density = case.water.density
         each = samples.of_body
         first = np.cumsum([0, *(len(s.offsets) for s in each)])
         self.sample = np.concatenate(
@@ -100,11 +99,12 @@ class Films:
         span = self.bodies.radius + 0.5 * (_FAR + 2.0) * self._spacing
         self._first, self._others = near_bodies(self.bodies.position, span, self._period)
 
-    def loads(self, domain, near, plate, position, quaternion):
+    def loads(self, domain, near, plate, position, quaternion, gravity):
         """What this rank's patches add to sums over all ranks: values (n, 6) and their rows (n,).
 
         Rows by body: loads, N and N m; then, each `bodies` rows further on, by face the wet rim and the rim that is dry
         though open and below the water line, in patches; and the sum of the heads along wet rims, Pa, and their number.
+        gravity (3,), m/s2: what pulls in this step.
         """
         p, here, b = domain.particles, self._here, self.bodies
         found = Found(*np.zeros((4, here.size, 6)))
@@ -122,7 +122,9 @@ class Films:
         )
         turn = matrices(quaternion).reshape(-1, 9)
         bodies = Bodies(position, turn, b.forms, self._first, self._others, self._period)
-        water = Water(p.p, self._head, self._spacing, self._layer, self._deep)
+        # water that goes round has no head along its way
+        head = np.where(np.isinf(self._period), self._density * np.array(gravity), 0.0)
+        water = Water(p.p, head, self._spacing, self._layer, self._deep)
         solids = bodies, self._planes, plate
         points = p.place, self.samples.shift
         patch_loads(here, patches, near.lists, points, solids, (water, self._weight), b.film, found)

@@ -6,10 +6,10 @@ import numpy as np
 
 from parsim.fluid.friction import SLIP, WEIGHT, Facets, Seen, mirror, rub, slip_of, spread
 from parsim.fluid.reference import Lattice
-from parsim.geometry.faces import names_of_walls, planes_of_walls
+from parsim.geometry.faces import names_of_walls, planes_of_walls, velocities_of_walls
 from parsim.geometry.rotation import matrices
 from parsim.particles.state import BODY, GATE_DOWN, GATE_UP, WALL
-from parsim.particles.tables import Vectors
+from parsim.particles.tables import Kinematics, Vectors
 
 
 class Rubbing(NamedTuple):
@@ -30,7 +30,8 @@ class Friction:
         self._lattice = lattice = Lattice(case.dimensions, case.spacing, case.water.scheme.support, WEIGHT)
         table, self._spacing = case.water.friction, case.spacing
         self._by_law = table.kind == "wall_law"
-        self._planes = planes_of_walls(case)
+        self._planes, self._velocities = planes_of_walls(case), velocities_of_walls(case)
+        self.slides = bool(self._velocities.any())
         self._rubs = np.array([table.walls is None or name in table.walls for name in names_of_walls(case)], bool)
         self._bodies_rub, self._mass = table.bodies, case.water.density * lattice.volume
         half = sum(w for w, _, _, up in lattice.points() if up > 0.5 * case.spacing)
@@ -43,7 +44,9 @@ class Friction:
         self.stress = np.zeros((0, 4))
 
     def find(self, p, near):
-        """Note, after a rebuild, the faces of this rank's samples, and which of all particles rub."""
+        """Note, after a rebuild, the faces of this rank's samples, which of all particles rub, and what slides."""
+        if self.slides:
+            self._note_sliding(p, near)
         if not self._by_law:
             self.share = np.where(self._rubbing(p), p.scale, 0.0)
         else:
@@ -61,13 +64,28 @@ class Friction:
     def find_slip(self, flow):
         """Set the slip of this rank's samples, and refresh it in the halos."""
         p, lists, weight = flow.particles, flow.near.lists, self._lattice.weight
+        kinematics = p.kinematics
+        if self.slides:  # samples of walls stay where they are
+            kinematics = Kinematics(p.place, Vectors(*map(np.add, p.velocity, self._sliding)))
         if self._by_law:
             self._turn()
-            rub(self._facets, lists, p.kinematics, weight, self._seen, self.stress)
+            rub(self._facets, lists, kinematics, weight, self._seen, self.stress)
             spread(self._facets, self._mass, self.stress, slip_of(p))
         else:
-            mirror(flow.near.boundary, lists, p.kinematics, weight, slip_of(p))
+            mirror(flow.near.boundary, lists, kinematics, weight, slip_of(p))
         flow.domain.refresh(*SLIP)
+
+    def _note_sliding(self, p, near):
+        """Note the velocities (3, n), m/s, of samples behind a side that moves; `sliding`: those of this rank."""
+        self._sliding, walls = np.zeros((3, len(p))), np.flatnonzero(p.kind == WALL)
+        for k in np.flatnonzero(self._velocities.any(axis=1)):
+            at = walls[(_before(self._planes[k], p, walls) < 0.0) & self._inside(p, walls, k)]
+            self._sliding[:, at] = self._velocities[k][:, None]
+        self.sliding = near.boundary[self._sliding[:, near.boundary].any(axis=0)]
+
+    def power(self, force):
+        """Work, W, (n,), that sides do on the water by its forces (n, 3), N, on the samples `sliding`."""
+        return -(force * self._sliding[:, self.sliding].T).sum(axis=1)
 
     def _turn(self):
         """Bring the normals of bodies to their present pose."""

@@ -1,4 +1,4 @@
-"""What pulls water and bodies alike: gravity, and along a channel that repeats the force that keeps its discharge."""
+"""What pulls water and bodies alike: gravity, what comes of a box that moves, and the force that keeps a discharge."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 
 from parsim.case.course import at_time
 from parsim.case.scales import gravity_at, scales
+from parsim.coupling.moving import Moving
+from parsim.particles.tables import Vectors
 
 if TYPE_CHECKING:
     from parsim.case.model import Case
@@ -22,21 +24,22 @@ class Pull:
 
     discharge, m3/s, of the water through the channel at the last step, mean over its length; drive, m/s2, what is added
     to gravity along x: a controller with a proportional and an integral part in exact sums, the same on all ranks;
-    work, J, done so far along x in a channel.
+    work, J, done so far along x in a channel, or by the motion of the box. moving: how the box moves.
     """
 
     def __init__(self, case: Case) -> None:
         self._case, self._channel = case, case.channel
-        self.discharge, self.drive, self.work, self._integral = np.nan, 0.0, 0.0, 0.0
-        scale = scales(case)
+        self.discharge, self.drive, self.work, self._integral, self._power = np.nan, 0.0, 0.0, 0.0, 0.0
+        self.moving, scale = Moving(case), scales(case)
+        self._watt = scale.energy / scale.time
         self._units = np.array([scale.length / scale.time, 1.0])
 
     def __bool__(self) -> bool:
-        return self._channel is not None
+        return self._channel is not None or bool(self.moving)
 
     def at(self, time: float) -> tuple[float, float, float]:
         """Acceleration along x, y, z, m/s2."""
-        x, y, z = gravity_at(self._case, time)
+        x, y, z = self.moving.gravity(time) if self.moving else gravity_at(self._case, time)
         return x + self.drive, y, z
 
     def steer(self, flow: Flow, bodies: Bodies, volume: float, time: float, dt: float) -> None:
@@ -58,10 +61,22 @@ class Pull:
         self.work += dt * pulled * self.at(time)[0]
         self._integral += dt * lag / (_INTEGRAL * self._channel.relaxation * self._channel.relaxation)
 
+    def count(self, flow: Flow, bodies: Bodies, mass: float, time: float, dt: float) -> None:
+        """Count the work of a box that moves in a step of dt, s, that ended at `time`, s; `mass` of a particle, kg."""
+        if not self.moving:
+            return
+        p, at = flow.particles, flow.near.fluid
+        place, velocity = (Vectors(*(part[at] for part in parts)) for parts in (p.place, p.velocity))
+        power = float(flow.domain.sum(mass * self.moving.power(time, place, velocity)[:, None], self._watt)[0])
+        free = ~(bodies.held(time) | bodies.gone)
+        power += float(self.moving.power_on(time, bodies)[free].sum())
+        self.work += 0.5 * dt * (self._power + power)
+        self._power = power
+
     def kept(self) -> dict[str, np.ndarray]:
         """What a restart needs."""
-        return {"drive": np.array([self.discharge, self.drive, self.work, self._integral])}
+        return {"drive": np.array([self.discharge, self.drive, self.work, self._integral, self._power])}
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
-        self.discharge, self.drive, self.work, self._integral = map(float, kept["drive"])
+        self.discharge, self.drive, self.work, self._integral, self._power = map(float, kept["drive"])

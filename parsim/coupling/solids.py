@@ -41,7 +41,7 @@ class Solids:
         self.openings = Openings(case, layers, self.bodies)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
         self._wet = case.water.scheme.WET
-        self._load = np.zeros((len(self.bodies), 6))  # of the water in this step
+        self._load, self._felt = np.zeros((2, len(self.bodies), 6))  # of the water, and of a box that turns
 
     @property
     def sources(self):
@@ -105,6 +105,15 @@ class Solids:
         """The same as it was found last."""
         return Rubbing(slip_of(p), self.friction.share) if self.friction else None
 
+    def sliding(self):
+        """Samples of this rank, of sides that move; none if nothing does."""
+        return self.friction.sliding if self.friction and self.friction.slides else None
+
+    def slide(self, flow, force, dt):
+        """Account for the work that sides do on the water, whose friction on `sliding` is `force`, N, in `dt`, s."""
+        power = self.friction.power(force)[:, None]
+        self.contacts.driven_work += dt * float(flow.domain.sum(power, self._scales.energy / self._scales.time)[0])
+
     def pushed(self):
         """Whether there is water, and bodies for it to push."""
         return self._wet and len(self.bodies) > 0
@@ -114,9 +123,10 @@ class Solids:
         domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
         force, lever, response = reaction
         plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)
-        added = self.films.loads(domain, near, plate, *pose)
+        added = self.films.loads(domain, near, plate, *pose, flow.gravity)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
         self.films.keep(*rims)
+        load += self._turn(flow, dt)
         self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt), flow.gravity)
 
     def driven(self, time):
@@ -135,12 +145,21 @@ class Solids:
                 with self.timers("move"):
                     self.samples.keep_out(flow.particles, flow.near, *self.bodies.drifted(0.5 * dt))
             with self.timers("contacts"):
-                self.contacts.step(self.bodies, self._load, time, dt)
+                self.contacts.step(self.bodies, self._load if self._wet else self._turn(flow, dt), time, dt)
+                if flow.turning:
+                    self.bodies.water_load -= self._felt
+                    self.bodies.gravity_load += self._felt
                 self.bodies.velocity *= flow.keep
                 self.bodies.spin *= flow.keep
         with self.timers("bodies"):
             self._place(flow.particles, self.bodies.position, self.bodies.quaternion, time + dt)
             self.openings.advance(flow.particles, dt)
+
+    def _turn(self, flow, dt):
+        """Find what bodies feel of a box that turns besides gravity, (bodies, 6), N and N m, in a step of dt, s."""
+        if flow.turning:
+            self._felt = flow.turning.load(self.bodies, 0.5 * dt)
+        return self._felt
 
     def _place(self, p, position, quaternion, time):
         if self.gate:

@@ -7,7 +7,7 @@ class Flow(NamedTuple):
     """The water: `Particles`, `Neighbours`, `Domain` (refreshing, sum, count, max); no rank, no case, no body.
 
     speed, m/s: the largest of anything; keep: the share of velocity kept in this step, less than 1 while it settles;
-    gravity, m/s2: what pulls in this step.
+    gravity, m/s2: what pulls in this step; turning: how the box turns (`coupling.moving.Turning`), or None.
     """
 
     particles: object
@@ -16,6 +16,7 @@ class Flow(NamedTuple):
     speed: float = 0.0
     keep: float = 1.0
     gravity: tuple = (0.0, 0.0, 0.0)
+    turning: object = None
 
 
 class Solids(Protocol):
@@ -37,6 +38,12 @@ class Solids(Protocol):
 
     def rub(self, flow):
         """What the water feels of the friction of walls and bodies, slip and share of samples; None where none rubs."""
+
+    def sliding(self):
+        """Samples of walls that move in their own planes, (n,); None where none do."""
+
+    def slide(self, flow, force, dt):
+        """Note what these do on the water in dt, s: `force` (n, 3), N, is its friction on them."""
 
     def pushed(self):
         """Whether there is anything that the water can push."""

@@ -20,6 +20,12 @@ def names_of_walls(case):
     return [SIDES[axis][sign > 0] for axis, sign, _ in walled_sides(case)]
 
 
+def velocities_of_walls(case):
+    """How fast the walls go in their own planes, (n, 3), m/s, in the order of `planes_of_walls`."""
+    sides = [getattr(case.box.faces, name) for name in names_of_walls(case)]
+    return np.array([side.velocity or (0.0, 0.0, 0.0) for side in sides]).reshape(-1, 3)
+
+
 def _holds(case, name, to):
     side = getattr(case.box.faces, name)
     return {"water": side.holds_water, "bodies": side.holds_bodies}[to]

@@ -8,6 +8,7 @@ import numpy as np
 
 from parsim.case.scales import scales
 from parsim.geometry.faces import names_of_walls, planes_of_walls
+from parsim.observe.filters import Filters
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Patch
 from parsim.particles.state import WALL
@@ -23,40 +24,60 @@ class Forces:
     """Two rows for each patch: pressure, by the samples of the first layer behind the wall, and friction."""
 
     name = "forces"
-    columns = columns(patch="-", kind="-", fx="N", fy="N", fz="N")
+    columns = columns(patch="-", filter="-", kind="-", fx="N", fy="N", fz="N")
 
     def __init__(self, case: Case) -> None:
         self._patches = [sensor for sensor in case.output.sensors if isinstance(sensor, Patch)]
         self._planes = dict(zip(names_of_walls(case), planes_of_walls(case), strict=True))
         self._unit, self._spacing = scales(case).force, case.spacing
         self._used = np.isin(range(3), case.axes)
-        self._head = case.water.density * np.array(case.gravity)
+        self._density, self._filters = case.water.density, Filters(self._patches)
         self._area = case.spacing ** (case.dimensions - 1)
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         if not self._patches:
             return []
+        force = self._read(s, self._patches)
+        if s.step_count > 0:
+            force = self._filters.applied(force)
+        return [
+            [patch.name, told, kind, *row[3 * k : 3 * k + 3]]
+            for patch, told, row in zip(self._patches, self._filters.names, force.tolist(), strict=True)
+            for k, kind in enumerate(KINDS)
+        ]
+
+    def see(self, s: Simulation) -> None:
+        """See `Follower`."""
+        if self._filters.which and s.step_count > 0:
+            self._filters.see(s.dt, self._read(s, [self._patches[k] for k in self._filters.which]))
+
+    def kept(self) -> dict[str, Any]:
+        """See `Follower`."""
+        return self._filters.kept()
+
+    def restore(self, kept: dict[str, Any]) -> None:
+        """See `Follower`."""
+        self._filters.restore(kept)
+
+    def _read(self, s, patches):
+        """Forces, N, on patches at this instant: of pressure, then of friction, (k, 6)."""
         if s.step_count == 0:  # there are no pressures yet
-            return [[patch.name, kind, *[np.nan] * 3] for patch in self._patches for kind in KINDS]
-        p = s.domain.particles
+            return np.full((len(patches), 6), np.nan)
+        head, p = self._density * np.array(s.solids.pull.at(s.time)), s.domain.particles
         at = s.near.boundary[p.kind[s.near.boundary] == WALL]
         place = np.stack([p.x[at], p.y[at], p.z[at]], axis=1)
         rubbed = s.scheme.rubbed(s.flow(), s.solids, at)
         values, index = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
-        for k, patch in enumerate(self._patches):
+        for k, patch in enumerate(patches):
             behind, within = self._behind(place, patch)
             first = within & (behind < self._spacing)
             inward = self._planes[patch.wall][:3]
-            pressure = np.maximum(p.p[at[first]] + self._head @ inward * behind[first], 0.0)  # at the wall itself
+            pressure = np.maximum(p.p[at[first]] + head @ inward * behind[first], 0.0)  # at the wall itself
             values += [-pressure[:, None] * inward * self._area, rubbed[within]]
             index += [np.full(first.sum(), 2 * k), np.full(within.sum(), 2 * k + 1)]
-        total = s.domain.sum(np.concatenate(values), self._unit, np.concatenate(index), 2 * len(self._patches))
-        return [
-            [patch.name, kind, *map(float, total[2 * k + row])]
-            for k, patch in enumerate(self._patches)
-            for row, kind in enumerate(KINDS)
-        ]
+        total = s.domain.sum(np.concatenate(values), self._unit, np.concatenate(index), 2 * len(patches))
+        return total.reshape(-1, 6)
 
     def _behind(self, place, patch):
         """How far places (n, 3) lie behind the wall of a patch, m, and whether they are right behind it."""

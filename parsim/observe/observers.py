@@ -13,6 +13,7 @@ from parsim.observe.forces import Forces
 from parsim.observe.front import Front
 from parsim.observe.gauges import Gauges
 from parsim.observe.ice import Ice
+from parsim.observe.levels import Levels
 from parsim.observe.loads import Loads
 from parsim.observe.lost import Lost
 from parsim.observe.observer import table
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
 
 # what is seen at a time; what has left is told at once
 OBSERVERS = (
-    Energy, Counts, Bodies, Loads, Gauges, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings, Ice, Peaks,
+    Energy, Counts, Bodies, Loads, Gauges, Levels, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings, Ice,
+    Peaks,
 )  # fmt: skip
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}

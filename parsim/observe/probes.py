@@ -12,6 +12,7 @@ from parsim.fluid.weights.choice import weight_at
 from parsim.geometry.faces import period
 from parsim.geometry.rotation import matrices
 from parsim.machine.jit import kernel
+from parsim.observe.filters import Filters
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Probe
 from parsim.particles.state import DETACHED
@@ -26,15 +27,16 @@ _DRY = 0.05  # of the weight of a full support, below which a point is dry
 
 class Probes:
     """One row for each probe: the mean of the water in the support, by the measure of concentration, each particle's
-    brought to the depth of the point. At this instant, unfiltered; zero where it is dry."""
+    brought to the depth of the point. At this instant, or by its filter; zero where it is dry."""
 
     name = "pressures"
-    columns = columns(probe="-", x="m", y="m", z="m", pressure="Pa")
+    columns = columns(probe="-", filter="-", x="m", y="m", z="m", pressure="Pa")
 
     def __init__(self, case: Case) -> None:
         middle = 0.5 * (case.box.min[1] + case.box.max[1])
         probes = [sensor for sensor in case.output.sensors if isinstance(sensor, Probe)]
         self._names, names = [probe.name for probe in probes], [body.name for body in case.bodies]
+        self._filters, self._density = Filters(probes), case.water.density
         self._places = np.array([[p.x, middle if p.y is None else p.y, p.z] for p in probes]).reshape(-1, 3)
         self._body = np.array([-1 if p.body is None else names.index(p.body) for p in probes], int)
         self._arms = np.zeros((len(probes), 3))
@@ -45,23 +47,47 @@ class Probes:
                 b = self._body[k]
                 self._arms[k] = (self._places[k] - bodies.position[b]) @ turn[b]
         self._period, self._unit = period(case), scales(case).pressure(case.dimensions)
-        # nothing rises along an axis that repeats
-        self._head = np.where(np.isinf(self._period), case.water.density * np.array(case.gravity), 0.0)
+
+    def see(self, s: Simulation) -> None:
+        """See `Follower`."""
+        if self._filters.which and s.step_count > 0:
+            _, pressure = self._read(s, self._filters.which)
+            self._filters.see(s.dt, pressure[:, None])
+
+    def kept(self) -> dict[str, Any]:
+        """See `Follower`."""
+        return self._filters.kept()
+
+    def restore(self, kept: dict[str, Any]) -> None:
+        """See `Follower`."""
+        self._filters.restore(kept)
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         if not self._names:
             return []
-        p, lattice, places = s.domain.particles, s.scheme.lattice, self._places.copy()
+        places, pressure = self._read(s, list(range(len(self._names))))
+        if s.step_count > 0:
+            pressure = self._filters.applied(pressure[:, None])[:, 0]
+        return [
+            [name, told, *map(float, place), float(value)]
+            for name, told, place, value in zip(self._names, self._filters.names, places, pressure, strict=True)
+        ]
+
+    def _read(self, s, which):
+        """Places (k, 3), m, and pressures (k,), Pa, of the probes of these numbers at this instant."""
+        p, lattice, places, body = s.domain.particles, s.scheme.lattice, self._places[which], self._body[which]
         turn = matrices(s.bodies.quaternion)
-        for k in np.flatnonzero(self._body >= 0):
-            places[k] = s.bodies.position[self._body[k]] + turn[self._body[k]] @ self._arms[k]
+        for k in np.flatnonzero(body >= 0):
+            places[k] = s.bodies.position[body[k]] + turn[body[k]] @ self._arms[which[k]]
         if s.step_count == 0:  # there are no pressures yet
-            return [[name, *map(float, place), np.nan] for name, place in zip(self._names, places, strict=True)]
+            return places, np.full(len(places), np.nan)
+        # nothing rises along an axis that repeats
+        head = np.where(np.isinf(self._period), self._density * np.array(s.solids.pull.at(s.time)), 0.0)
         found = np.empty((len(places) * 64, 3))
         seen = lattice.weight, lattice.radius, self._period
         while True:
-            count = pressures(s.near.fluid, p.place, (p.p, p.surface), places, seen, self._head, found)
+            count = pressures(s.near.fluid, p.place, (p.p, p.surface), places, seen, head, found)
             if count <= len(found):
                 break
             found = np.empty((2 * count, 3))
@@ -69,12 +95,9 @@ class Probes:
         total = s.domain.sum(values, units, row, len(places))
         wet = total[:, 1] > _DRY * lattice.whole
         pressure = np.where(wet, total[:, 0] / np.where(wet, total[:, 1], 1.0), 0.0)
-        gone = (self._body >= 0) & s.bodies.gone[self._body] if len(s.bodies) else np.zeros(len(places), bool)
+        gone = (body >= 0) & s.bodies.gone[body] if len(s.bodies) else np.zeros(len(places), bool)
         pressure[gone], places[gone] = np.nan, np.nan
-        return [
-            [name, *map(float, place), float(value)]
-            for name, place, value in zip(self._names, places, pressure, strict=True)
-        ]
+        return places, pressure
 
 
 @kernel

@@ -1,11 +1,13 @@
 """What a case may say of a place where something is measured: one table for each kind, listed at the end."""
 
-from typing import ClassVar, Literal
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
 from parsim.case.friction import FaceName
-from parsim.case.types import Name, Number, Positive, Table, Vector, choice
+from parsim.case.types import Count, Name, Number, Positive, Table, Vector, choice
+from parsim.observe.filters import Filter
 
 
 class Gauge(Table):
@@ -19,6 +21,28 @@ class Gauge(Table):
     y: Number | None = Field(None, description="place, m; left out: the middle of the box")
 
 
+class Levelling(Table):
+    """A line along which the water level is written, at points that are even apart."""
+
+    kind: Literal["levels"] = Field(description="the water level along a line")
+    name: Name = Field(description="name, used in results")
+    start: tuple[Number, Number] = Field(description="first point, x and y, m; in 2D y is of no matter")
+    end: tuple[Number, Number] = Field(description="last point, x and y, m")
+    points: Annotated[Count, Field(ge=2, le=10000)] = Field(description="number of points, the ends with them")
+
+    def faults(self, case: Any) -> Iterator[str]:
+        """What is wrong with it in a completed case: messages, after the name of the sensor."""
+        for key, place in (("start", self.start), ("end", self.end)):
+            for axis in case.axes[:-1]:
+                low, high = case.box.min[axis], case.box.max[axis]
+                if not low <= place[axis] <= high:
+                    yield f"{key}.{axis} = {place[axis]!r}: outside the box; must be {low!r} to {high!r}"
+        if all(self.start[axis] == self.end[axis] for axis in case.axes[:-1]):
+            yield f"start, end = {list(self.start)}: must be two points"
+        if case.gravity[2] >= 0.0:
+            yield f"kind: gravity = {list(case.gravity)}: must go along -z where there are levels"
+
+
 class Probe(Table):
     """Where the pressure of the water is written."""
 
@@ -28,6 +52,7 @@ class Probe(Table):
     y: Number | None = Field(None, description="place, m; left out: the middle of the box")
     z: Number = Field(description="place, m")
     body: Name | None = Field(None, description="body with which it moves, from that place at the start")
+    filter: Filter | None = Field(None, description="what smooths it, over all steps; left out: nothing")
 
 
 class Patch(Table):
@@ -38,6 +63,7 @@ class Patch(Table):
     wall: FaceName = Field(description="side of the box")
     min: Vector | None = Field(None, description="lowest corner of what counts, m; left out: all of it")
     max: Vector | None = Field(None, description="highest corner of what counts, m")
+    filter: Filter | None = Field(None, description="what smooths it, over all steps; left out: nothing")
 
 
 class Section(Table):
@@ -68,4 +94,4 @@ class Load(Table):
     body: Name | None = Field(None, description="body; left out: every fixed one")
 
 
-Sensor = choice(Gauge, Probe, Patch, Section, Line, Load)
+Sensor = choice(Gauge, Levelling, Probe, Patch, Section, Line, Load)

@@ -104,6 +104,7 @@ class Simulation:
         self.time += dt
         self.step_count += 1
         self.since += 1
+        self.solids.pull.count(self.flow(), self.bodies, self.scheme.mass, self.time, dt)
         if self.solids.openings:
             self.solids.openings.look(self.flow(), self.time, dt)
         with self.domain.refreshing(*self.scheme.STATE):
@@ -111,8 +112,9 @@ class Simulation:
 
     def flow(self, keep: float = 1.0) -> Flow:
         """The water as the scheme sees it; `keep`: see `Flow`."""
-        pull = self.solids.pull.at(self.time + 0.5 * self.dt)
-        return Flow(self.domain.particles, self.near, self.domain, self.speed, keep, pull)
+        pull, middle = self.solids.pull, self.time + 0.5 * self.dt
+        felt = pull.at(middle), pull.moving.turning(middle)
+        return Flow(self.domain.particles, self.near, self.domain, self.speed, keep, *felt)
 
     def _outrun(self, dt):
         """Whether the lists would miss pairs within this step; the same on every rank."""

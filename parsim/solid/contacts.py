@@ -51,7 +51,8 @@ class Contacts:
 
     def __init__(self, bodies, case, driven=(), gravity_at=None):
         self.bodies, self._driven = bodies, list(driven)
-        self._gravity_at, self._gravity = gravity_at or functools.partial(ramped, case), np.array(case.gravity, float)
+        self._ramp, self._gravity = functools.partial(ramped, case), np.array(case.gravity, float)
+        self._gravity_at = gravity_at or self._ramp
         self._steps_per_contact = case.contacts.steps_per_contact
         material = list(case.materials).index(case.wall_material) if case.materials else 0
         self._walls, self._period = _of_material(planes_of_walls(case, "bodies"), material), period(case)
@@ -182,7 +183,7 @@ class Contacts:
 
     def _grow(self, time, dt):
         """Count half the work of gravity that grows over a step: asked before it and after."""
-        less = np.subtract(self._gravity_at(time), self._gravity_at(time + dt))
+        less = np.subtract(self._ramp(time), self._ramp(time + dt))
         if less.any():
             there = np.where(self.bodies.gone, 0.0, self.bodies.mass)
             self.driven_work += 0.5 * float((there[:, None] * self.bodies.position * less).sum())

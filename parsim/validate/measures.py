@@ -1,6 +1,7 @@
 """What is measured of a finished run for its bars: functions of the run and of what `_bars.toml` gives them."""
 
 from parsim.validate import body_measures as bodies
+from parsim.validate import exact_measures as exact
 from parsim.validate import series_measures as series
 
 MEASURES = {
@@ -10,5 +11,6 @@ MEASURES = {
         bodies.carried, bodies.tilt, bodies.rests, bodies.height_over, bodies.drift, series.mean, series.maximum,
         series.minimum, series.last, series.first_over, series.noise_of, series.period_of, series.damping_of,
         series.off_curve, series.balance, series.energy_made, series.off_log_law, series.off_parabola,
+        exact.off_sway, exact.off_couette,
     )
 }  # fmt: skip

@@ -53,9 +53,15 @@ class WCMPS:
         self._resolved = no_slip or water.eddies is not None  # viscosity is then no matter of the momentum sweep
         self._mixing = 2.0 * case.dimensions / self._smooth.number
         self._rub = self.viscosity * self._mixing if no_slip else 0.0
-        self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
-        self._steepness = gravity / self.sound**2  # 1/m: slope downward of n over n0 in water at rest
+        self._leans = case.motion is not None
+        self._lean(case.gravity)
         self.close2 = (choice.collision_distance * case.spacing) ** 2
+
+    def _lean(self, gravity):
+        """Note which way is down, and the slope of n over n0, 1/m, downward in water at rest, by gravity, m/s2."""
+        size = math.hypot(*gravity)
+        self._down = tuple(g / (size or 1.0) for g in gravity)
+        self._steepness = size / self.sound**2
 
     def time_step(self, speed, acceleration=0.0):
         """Stable time step, s, at the largest speed, m/s (Mellado 2021, eq. 5.18), and acceleration, m/s2.
@@ -92,12 +98,16 @@ class WCMPS:
     def step(self, flow, solids, time, dt):
         """One step: see the module. `STATE` is left to be refreshed."""
         p, near, domain = flow.particles, flow.near, flow.domain
+        if self._leans:
+            self._lean(flow.gravity)
         with self.timers("predict"):
             solids.place(flow, time, 0.5 * dt)
             self._predict(p, dt)
             solids.hold(flow, self.at_rest)
-        self._press(p, near, flow.gravity)
+        self._press(p, near, flow)
         rubbing = solids.rub(flow)
+        if (sliding := solids.sliding()) is not None:
+            solids.slide(flow, self.rubbed(flow, solids, sliding), dt)
         with self.timers("bodies"):
             if solids.pushed():
                 solids.push(flow, self._react(p, near, near.body, dt, rubbing), time, dt)
@@ -106,6 +116,8 @@ class WCMPS:
         self._accelerate(domain, near, dt)
         self._shear(domain, near, rubbing, solids.depths, dt)
         with self.timers("move"):
+            if flow.turning:
+                flow.turning.push(p, near.fluid, flow.gravity, dt)
             updates.kick(near.fluid, flow.gravity, flow.keep, dt, p.acceleration, p.velocity)
             solids.release(flow)
         solids.advance(flow, time, dt)
@@ -116,19 +128,12 @@ class WCMPS:
         state = 0.5 * dt, self.lattice.number, self.stiffness
         updates.predict(p.kind, p.surface, p.velocity, p.rate, state, p.place, p.n, p.p)
 
-    def _press(self, p, near, gravity):
+    def _press(self, p, near, flow):
         """Pressures of the boundary at the half step, for the accelerations that it has there."""
         with self.timers("boundary"):
-            sweeps.boundary_pressure(
-                near.boundary,
-                near.lists,
-                p.body,
-                p.place,
-                p.acceleration,
-                self.lattice.weight,
-                (*gravity, self.density),
-                p.p,
-            )
+            fall, at = (*flow.gravity, self.density), near.boundary
+            own = flow.turning.less(p) if flow.turning else p.acceleration
+            sweeps.boundary_pressure(at, near.lists, p.body, p.place, own, self.lattice.weight, fall, p.p)
 
     def _accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
@@ -229,16 +234,8 @@ class WCMPS:
         )
         out = tables.Change(p.rate, _shifts(p), p.vectors(TWICE_VISCOUS), isotropy(p))
         with self.timers("continuity"):
-            sweeps.continuity(
-                at,
-                near.lists,
-                p.kinematics,
-                tables.Density(p.n, p.scale, p.body),
-                p.vectors(VISCOUS),
-                lattice.weight,
-                growth,
-                out,
-            )
+            density, viscous = tables.Density(p.n, p.scale, p.body), p.vectors(VISCOUS)
+            sweeps.continuity(at, near.lists, p.kinematics, density, viscous, lattice.weight, growth, out)
 
     def _shift(self, domain, near, dt, speed):
         p, lattice = domain.particles, self.lattice

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from parsim.output.reader import Run
     from parsim.report.build import Page
 
-# series, column that names the curves, second name, what is drawn, label of the axis
+# series, column that names the curves, what else does, what is drawn, label of the axis
 _OVER_TIME = (
-    ("pressures", "probe", None, "pressure", "pressure (Pa)"),
-    ("forces", "patch", "kind", "fx", "fx (N)"),
-    ("forces", "patch", "kind", "fz", "fz (N)"),
-    ("fluxes", "section", None, "discharge", "discharge (m3/s)"),
+    ("pressures", "probe", ("filter",), "pressure", "pressure (Pa)"),
+    ("forces", "patch", ("filter", "kind"), "fx", "fx (N)"),
+    ("forces", "patch", ("filter", "kind"), "fz", "fz (N)"),
+    ("fluxes", "section", (), "discharge", "discharge (m3/s)"),
 )
 
 
@@ -39,8 +39,8 @@ def sensors(run: Run) -> Figure | None:
     if not found and lines is None:
         return None
     drawn, axes = figure(len(found) + (lines is not None), 1, 2.4)
-    for each, (name, second, quantity, label, series) in zip(axes[:, 0], found, strict=False):
-        _over_time(each, series, (name, second), quantity)
+    for each, (name, others, quantity, label, series) in zip(axes[:, 0], found, strict=False):
+        _over_time(each, series, (name, *others), quantity)
         each.set_xlabel("time (s)")
         each.set_ylabel(label)
         each.legend(fontsize=7, frameon=False, ncols=4)
@@ -49,14 +49,12 @@ def sensors(run: Run) -> Figure | None:
     return drawn
 
 
-def _over_time(axes: Axes, series: dict[str, Any], names: tuple[str, str | None], quantity: str) -> None:
-    """A curve for each thing, or each thing and kind."""
-    first, second = names
-    keys = [first] if second is None else [first, second]
-    for number, key in enumerate(dict.fromkeys(zip(*(series[k].tolist() for k in keys), strict=True))):
-        here = np.logical_and.reduce([series[k] == value for k, value in zip(keys, key, strict=True)])
-        style = LINES[number // 5 % 4]
-        axes.plot(series["time"][here], series[quantity][here], style, linewidth=1.2, label=", ".join(key))
+def _over_time(axes: Axes, series: dict[str, Any], names: tuple[str, ...], quantity: str) -> None:
+    """A curve for each of what the columns `names` tell apart."""
+    for number, key in enumerate(dict.fromkeys(zip(*(series[k].tolist() for k in names), strict=True))):
+        here = np.logical_and.reduce([series[k] == value for k, value in zip(names, key, strict=True)])
+        style, label = LINES[number // 5 % 4], ", ".join(word for word in key if word != "none")
+        axes.plot(series["time"][here], series[quantity][here], style, linewidth=1.2, label=label)
 
 
 def _profiles(axes: Axes, series: dict[str, Any]) -> None:
