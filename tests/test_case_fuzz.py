@@ -19,7 +19,7 @@ from parsim.case.file import read
 from parsim.case.model import load
 from parsim.errors import InputError
 
-FEW, MANY = 250, 10_000
+FEW, MANY = 150, 10_000
 SMALL = 3000  # particles of a case that is also built and run
 SOURCES = [
     SPACE,

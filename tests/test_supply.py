@@ -146,6 +146,7 @@ def test_what_passes_the_outlet_is_led_out_level():
     assert np.isnan(b.lead[0])
 
 
+@pytest.mark.long
 def test_floes_across_a_channel_keep_apart():
     s = simulation(reach(across=0.18, shape="polygon", size=0.07, until=0.6))
     while s.time < 0.2:

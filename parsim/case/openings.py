@@ -43,7 +43,7 @@ def _inlet(case):
         return
     depth = level - case.box.min[2]
     width = 1.0 if case.dimensions == 2 else case.box.size[1]
-    mean = largest(side.discharge) / (depth * width)
+    mean = largest(side.discharge) / (depth * width) if depth * width > 0.0 else 0.0  # the box is told of elsewhere
     if mean > case.speed:
         yield (
             f"discharge = {largest(side.discharge):g}: is {mean:.4g} m/s through {depth * width:.4g} m2, more than the "

@@ -82,6 +82,9 @@ def _wrong(case, supply):
     if case.box.faces.x_min.kind != "inlet":
         yield f'name = "{supply.name}": floes come in through an inlet; box.faces.x_min must be of the kind "inlet"'
         return
+    if _depth(case) * width_of(case) <= 0.0:
+        yield f'name = "{supply.name}": there is no water at the inlet'
+        return
     if (supply.concentration is None) == (supply.discharge is None):
         told = "none" if supply.discharge is None else "both"
         yield f"concentration, discharge: {told} given; must be exactly one"
