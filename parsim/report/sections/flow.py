@@ -61,50 +61,37 @@ def lines(run: Run) -> list[str]:
 
 def openings(run: Run) -> Figure | None:
     """Discharges and levels at inlet and outlet over time."""
-    series = columns(run, "openings")
-    if series is None:
-        return None
-    drawn, axes = figure(2, height=2.4, sharex=True)
-    for row, (name, unit) in enumerate((("discharge", "discharge (m3/s)"), ("level", "level z (m)"))):
-        for side, colour, label in (("in", WATER, "inlet"), ("out", ACCENT, "outlet")):
-            values = series[f"{name}_{side}"]
-            if np.isfinite(values).any():
-                axes[row, 0].plot(series["time"], values, color=colour, linewidth=1.4, label=label)
-        axes[row, 0].set_ylabel(unit)
-    axes[0, 0].legend(fontsize=8, frameon=False)
-    axes[1, 0].set_xlabel("time (s)")
-    return drawn
+    sides = (("in", "inlet", WATER), ("out", "outlet", ACCENT))
+    rows = (("discharge", "discharge (m3/s)"), ("level", "level z (m)"))
+    return _over_time(
+        columns(run, "openings"), {unit: [(f"{name}_{s}", label, c) for s, label, c in sides] for name, unit in rows}
+    )
 
 
 def channel(run: Run) -> Figure | None:
     """Discharge and energy slope of a channel that repeats, over time."""
-    series = columns(run, "channel")
-    if series is None:
-        return None
-    drawn, axes = figure(2, height=2.4, sharex=True)
-    axes[0, 0].plot(series["time"], series["discharge"], color=WATER, linewidth=1.4, label="water")
-    axes[0, 0].plot(series["time"], series["wanted"], color=FAINT, linestyle="--", linewidth=1.2, label="asked for")
-    if series["ice"].any():
-        axes[0, 0].plot(series["time"], series["ice"], color=INK, linewidth=1.2, label="ice")
-    axes[0, 0].set_ylabel("discharge (m3/s)")
-    axes[0, 0].legend(fontsize=8, frameon=False)
-    axes[1, 0].plot(series["time"], series["energy_slope"], color=ACCENT, linewidth=1.2)
-    axes[1, 0].set_ylabel("energy slope")
-    axes[1, 0].set_xlabel("time (s)")
-    return drawn
+    flows = [("discharge", "water", WATER), ("wanted", "asked for", FAINT), ("ice", "ice", INK)]
+    slope = [("energy_slope", "energy slope", ACCENT)]
+    return _over_time(columns(run, "channel"), {"discharge (m3/s)": flows, "energy slope": slope})
 
 
 def ice(run: Run) -> Figure | None:
     """Volumes of ice in, out and inside, and how long the way in was blocked, over time."""
-    series = columns(run, "ice")
+    volumes = [(f"volume_{name}", name, colour) for name, colour in (("in", WATER), ("inside", INK), ("out", ACCENT))]
+    blocked = [("blocked", "blocked", ACCENT)]
+    return _over_time(columns(run, "ice"), {"ice (m3)": volumes, "blocked (s)": blocked})
+
+
+def _over_time(series, panels):
+    """Curves over time: {label of a panel: (column, name, colour) of each of its curves}; None without a series."""
     if series is None:
         return None
-    drawn, axes = figure(2, height=2.4, sharex=True)
-    for name, colour in (("in", WATER), ("inside", INK), ("out", ACCENT)):
-        axes[0, 0].plot(series["time"], series[f"volume_{name}"], color=colour, linewidth=1.4, label=name)
-    axes[0, 0].set_ylabel("ice (m3)")
+    drawn, axes = figure(len(panels), height=2.4, sharex=True)
+    for each, (label, curves) in zip(axes[:, 0], panels.items(), strict=True):
+        for column, name, colour in curves:
+            if np.isfinite(series[column]).any():
+                each.plot(series["time"], series[column], color=colour, linewidth=1.4, label=name)
+        each.set_ylabel(label)
     axes[0, 0].legend(fontsize=8, frameon=False)
-    axes[1, 0].plot(series["time"], series["blocked"], color=ACCENT, linewidth=1.4)
-    axes[1, 0].set_ylabel("blocked (s)")
-    axes[1, 0].set_xlabel("time (s)")
+    axes[-1, 0].set_xlabel("time (s)")
     return drawn
