@@ -5,7 +5,9 @@ import pytest
 from ground import channel, plane, raster, reach, scattered
 
 from parsim.case.model import load
+from parsim.coupling.openings import Openings
 from parsim.errors import InputError
+from parsim.solid.bodies import from_case
 from parsim.solid.shapes.bed import BedShape
 
 CASE = """
@@ -211,3 +213,28 @@ def test_a_bed_in_a_completed_case_stays_where_it_is(tmp_path, change, said):
 def test_a_bed_has_no_shape_in_a_plane(tmp_path):
     shape = bed_of(made(tmp_path))
     assert isinstance(shape, BedShape) and list(shape.faults(True)) == ['shape.kind = "bed": a 2D case has none']
+
+
+@pytest.mark.parametrize(("face", "said"), [
+    ('x_max = {kind = "outlet", level = 0.25}', "x_max.level = 0.25: must be above the bed, 0.3"),
+    ('x_min = {kind = "inlet", discharge = 0.1, level = 0.35}', "x_min.level = 0.35: must be more than a spacing"),
+])  # fmt: skip
+def test_a_level_below_the_bed_is_told(face, said, tmp_path):
+    raster(tmp_path, channel)
+    (tmp_path / "case.toml").write_text(CASE.replace("[bed]", f"[box.faces]\n{face}\n[bed]"))
+    with pytest.raises(InputError) as error:
+        load(tmp_path / "case.toml")
+    assert said in str(error.value)
+
+
+def test_an_inlet_over_a_bed_gives_water_above_it_only(tmp_path):
+    raster(tmp_path, channel)
+    face = 'x_min = {kind = "inlet", discharge = 0.1, profile = {kind = "log", roughness = 0.05}}'
+    (tmp_path / "case.toml").write_text(CASE.replace("[bed]", f"[box.faces]\n{face}\n[bed]"))
+    case = load(tmp_path / "case.toml")
+    bodies = from_case(case)
+    inlet = Openings(case, case.layers, bodies).inlet
+    ground = bed_of(case).heights.at(np.full(inlet._y.size, 0.05), inlet._y)
+    assert (inlet.solid == (inlet._z < ground)).mean() > 0.98 and not inlet.awake[inlet.solid].any()
+    inlet.follow(0.7, 1.0, 0.1)
+    assert inlet.speed.sum() * 0.01 == pytest.approx(0.1) and inlet.speed[inlet._z < ground - 0.01].max() == 0.0

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flows import simulation, tank
+from flows import WOOD, simulation, tank
 
 from parsim.boundary.outlet import normal_depth
 from parsim.case.model import parse
@@ -91,6 +91,25 @@ def test_places_wake_and_sleep_with_the_level():
     assert inlet.awake.sum() == 11
     inlet.follow(0.112, 0.0, 0.001)
     assert float(inlet.speed.sum()) * 0.01 == pytest.approx(0.04, rel=1e-12), "whatever the level"
+
+
+def test_no_water_comes_in_where_something_fixed_stands():
+    """A sill at the inlet: the discharge comes in over it, with the profile of what is left, and nothing leaks."""
+    sill = {"name": "sill", "shape": {"size": [0.3, 1.0, 0.04]}, "density": 2000.0, "position": [0.15, 0.5, 0.02]}
+    given = reach({"profile": {"kind": "linear", "bottom": 0.5}}) | {
+        "materials": WOOD, "bodies": [sill | {"material": "wood", "fixed": True}]
+    }  # fmt: skip
+    s = simulation(given)
+    inlet, start = s.solids.openings.inlet, s.near.fluid.size
+    assert inlet.solid.sum() == 4 and not inlet.awake[inlet.solid].any() and inlet.awake.sum() == 6
+    shares = inlet.speed[inlet.awake]
+    assert not s.time and shares.sum() * 0.01 == pytest.approx(0.04)
+    assert shares / shares.mean() == pytest.approx(0.5 + (inlet._z[inlet.awake] - 0.04) / 0.06)
+    while s.time < 0.3:
+        s.step()
+        assert balance(s) == start and not s.domain.lost
+    p, at = s.domain.particles, s.near.fluid
+    assert p.x[at].min() > -0.005 and not ((p.x[at] < 0.295) & (p.z[at] < 0.035)).any(), "none gets under it"
 
 
 def test_water_goes_on_beyond_the_outlet_and_not_back():

@@ -37,11 +37,12 @@ class Inlet:
     """The inlet of a case at x_min. level, m: of the water that comes in; discharge, m3/s (2D: m2/s), as asked now.
 
     speed (places,), m/s; travel (places,), m; first (places,), particles that each has given to the water so far;
-    covered (places,): ice comes in there, and no water; displaced, m3: water that did not come in for it so far;
+    solid (places,): what is fixed stands there, and the samples are a wall; covered (places,): ice comes in there, and
+    no water; displaced, m3: water that did not come in for it so far;
     surface_speed, m/s: of the uppermost water that comes in.
     """
 
-    def __init__(self, case: Case, layers: int) -> None:
+    def __init__(self, case: Case, layers: int, fixed: list[Solid]) -> None:
         self._side, self._case, self._layers, l0 = case.box.faces.x_min, case, layers, case.spacing
         self.x, self._floor = case.box.min[0], case.box.min[2]
         across, beyond = lattice_axis(case, 1, 0)
@@ -57,7 +58,11 @@ class Inlet:
         count = self._y.size
         self.travel, self.speed = np.zeros(count), np.zeros(count)
         self.first, self.awake = np.zeros(count, np.int64), np.zeros(count, bool)
-        self.covered, self.displaced, self._solids, self._lost = np.zeros(count, bool), 0.0, [], 0.0
+        self.covered, self.displaced, self._lost = np.zeros(count, bool), 0.0, 0.0
+        self._solids: list[Solid] = []
+        self.solid = ~self._clear(np.full(count, self.x + 0.5 * l0), np.arange(count), fixed)
+        low = np.minimum.accumulate(self.solid.reshape(y.shape), axis=1).sum(axis=1)  # how many from the floor on
+        self._bottom = self._floor + l0 * np.repeat(low, up.size)
         self._at, self._of, self._behind = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
         self._wake()
         self.follow(math.nan, case.start, 0.0)
@@ -94,8 +99,8 @@ class Inlet:
     def cover(self, solids: list[Solid]) -> None:
         """Let no water come in where one of the solids does."""
         self._solids, before, every = solids, self._gives, np.arange(self._z.size)
-        nearest = self._clear(self._place(every, 0, 0.0), every)
-        edge = self._clear(np.full(every.size, self.x - 0.5 * self._case.spacing), every)
+        nearest = self._clear(self._place(every, 0, 0.0), every, solids)
+        edge = self._clear(np.full(every.size, self.x - 0.5 * self._case.spacing), every, solids)
         self.covered = ~np.where(self.covered, edge, nearest)
         self._begin(self._gives & ~before)
         self._flow()
@@ -105,20 +110,22 @@ class Inlet:
         """Which places give water: (places,) bool."""
         return self.awake & ~self.covered
 
-    def _clear(self, x, place):
-        """Whether water at x (n,), m, of some places is not where something comes in: (n,) bool.
+    def _clear(self, x, place, solids):
+        """Whether water at x (n,), m, of some places is not in one of the solids: (n,) bool.
 
         On the average it is then half a spacing off, and as much is left out as the solids take.
         """
         points = np.stack([x, self._y[place], self._z[place]], axis=1)
         free = np.ones(len(points), bool)
-        for solid in self._solids:
+        for solid in solids:
             free &= clearance(solid, points) > 0.0
         return free
 
     def _shares(self):
-        above, depth = self._z - self._floor, self.level - self._floor
-        shares = np.ones(above.size) if self._side.profile is None else self._side.profile.at(above, depth)
+        shares, profile = np.ones(self._z.size), self._side.profile
+        for bottom in np.unique(self._bottom).tolist() if profile else ():
+            over, depth = self._bottom == bottom, max(self.level - bottom, self._case.spacing)
+            shares[over] = profile.at(self._z[over] - bottom, depth)
         return np.where(self.awake, shares, 0.0)
 
     def _wake(self):
@@ -126,6 +133,7 @@ class Inlet:
         top, slack = self._z + 0.5 * self._case.spacing, _SLACK * self._case.spacing
         before, given = self.awake, self._gives
         self.awake = np.where(before, top < self.level + 0.5 * self._case.spacing + slack, top <= self.level + slack)
+        self.awake &= ~self.solid
         self._begin(self._gives & ~given)
 
     def _begin(self, woken):
@@ -158,11 +166,11 @@ class Inlet:
 
     def samples(self, slab: Slab, time: float) -> Particles:
         """The samples of the slab, `layers` deep, nearest first: Particles with layer and place as `sample`."""
-        place = np.flatnonzero(self._gives)
+        place = np.flatnonzero(self._gives | self.solid)
         layer, place = (each.ravel() for each in np.meshgrid(np.arange(self._layers), place, indexing="ij"))
         number = layer * self._z.size + place
         x = self._place(place, layer, 0.0)
-        at = np.flatnonzero((slab.cells(x, self._y[place], self._z[place]) >= 0) & self._clear(x, place))
+        at = np.flatnonzero((slab.cells(x, self._y[place], self._z[place]) >= 0) & self._clear(x, place, self._solids))
         return Particles(
             at.size,
             id=make_id(INLET, number[at]),

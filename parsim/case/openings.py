@@ -7,6 +7,7 @@ import numpy as np
 from parsim.case.course import at_time, largest, least, wrong_course
 from parsim.case.fill import water_at
 from parsim.geometry.faces import SIDES
+from parsim.solid.shapes.bed import BedShape
 
 _PLACE = {"inlet": "x_min", "outlet": "x_max"}
 
@@ -38,8 +39,9 @@ def _inlet(case):
             if least(course) < 0.0 and key == "discharge":
                 yield f"discharge = {least(course):g}: must be 0 or more; it flows in"
     level = standing[1] if side.level is None else at_time(side.level, 0.0)
-    if side.level is not None and least(side.level) <= case.box.min[2] + case.spacing:
-        yield f"level = {least(side.level):g}: must be more than a spacing above the floor, {case.box.min[2]!r} m"
+    floor, what = _ground(case, case.box.min[0])
+    if side.level is not None and least(side.level) <= floor + case.spacing:
+        yield f"level = {least(side.level):g}: must be more than a spacing above the {what}, {floor!r} m"
         return
     depth = level - case.box.min[2]
     width = 1.0 if case.dimensions == 2 else case.box.size[1]
@@ -60,12 +62,12 @@ def _outlet(case):
         told = " and ".join(given) or "none"
         yield f"level, rating, normal: {told} given; must be exactly one"
         return
-    floor, top = case.box.min[2], case.box.max[2]
+    (floor, what), top = _ground(case, case.box.max[0]), case.box.max[2]
     if side.level is not None:
         yield from wrong_course("level", side.level)
         low, high = least(side.level), largest(side.level)
         if low <= floor:
-            yield f"level = {low:g}: must be above the floor, {floor!r} m"
+            yield f"level = {low:g}: must be above the {what}, {floor!r} m"
         if high > top:
             yield f"level = {high:g}: must be below the top of the box, {top!r} m"
     if side.rating is not None:
@@ -76,4 +78,13 @@ def _outlet(case):
                 low, high = rows[fall[0] : fall[0] + 2, column]
                 yield f"rating: {name} {high:g} after {low:g}: must grow from row to row"
         if rows[:, 1].min() <= floor:
-            yield f"rating: level {rows[:, 1].min():g} m: must be above the floor, {floor!r} m"
+            yield f"rating: level {rows[:, 1].min():g} m: must be above the {what}, {floor!r} m"
+
+
+def _ground(case, x):
+    """(height of the lowest ground at x, m; what it is)."""
+    for body in case.bodies:
+        if isinstance(body.shape, BedShape):
+            y = np.linspace(case.box.min[1], case.box.max[1], max(round(case.box.size[1] / case.spacing), 1) + 1)
+            return round(float(body.shape.heights.at(np.full(y.size, x), y).min()), 9), "bed"
+    return case.box.min[2], "floor"

@@ -8,8 +8,10 @@ import numpy as np
 
 from parsim.boundary.inlet import Inlet
 from parsim.boundary.outlet import Outlet
+from parsim.case.places import Place
 from parsim.case.scales import scales
 from parsim.coupling.passage import Passage
+from parsim.geometry.rotation import matrices
 from parsim.particles.state import DETACHED
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ class Openings:
 
     def __init__(self, case: Case, layers: int, bodies: Bodies) -> None:
         faces, scale = case.box.faces, scales(case)
-        self.inlet = Inlet(case, layers) if faces.x_min.kind == "inlet" else None
+        self.inlet = Inlet(case, layers, _fixed(bodies)) if faces.x_min.kind == "inlet" else None
         self.outlet = Outlet(case, layers) if faces.x_max.kind == "outlet" else None
         self.passage = Passage(case, bodies, self.inlet, self.outlet)
         self._depth, self._floor, self._spacing = case.depth, case.box.min[2], case.spacing
@@ -116,3 +118,9 @@ class Openings:
         for each in (self.inlet, self.outlet):
             if each:
                 each.restore(kept)
+
+
+def _fixed(bodies):
+    """Where the fixed bodies are."""
+    turn = matrices(bodies.quaternion)
+    return [Place(bodies.position[b], turn[b], bodies.shapes[b]) for b in np.flatnonzero(bodies.fixed)]
