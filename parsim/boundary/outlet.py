@@ -2,9 +2,9 @@
 
 Beyond the side, over the depth of the support, the pressure is that of water at rest with the level there; the
 particles go on as they came, faster and slower with the water before the side, not backward, and are taken out at its
-end. So the water inside feels a level and nothing else. A wave from inside shows in the Riemann invariant
-V + 2 sqrt(g h) that runs out; the level gives way to it by so much that the one that runs in stays what it is on the
-average.
+end. So the water inside feels a level and nothing else. A wave from inside shows in the Riemann invariant that runs
+out, V + 2 sqrt(g h); the level gives way to it such that the one that runs in is that of water without waves, which has
+the mean speed and the level asked for.
 """
 
 from __future__ import annotations
@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.particles.state import Particles
 
-_TRAVELS = 5.0  # H / V, over which discharge and the outgoing invariant are averaged
+_TRAVELS = 5.0  # H / V, over which the discharge is averaged
+_SWINGS = 4.0  # lengths of the box over sqrt(g H), over which the speed is averaged that waves are waves on
+_AHEAD = 0.25  # depths that the water looked at is before the outlet: what is seen there comes so much later
 _LAG = 0.1  # sqrt(H / g), of the velocity before the side that the zone follows: sound is not to shake it
 
 
@@ -38,11 +40,12 @@ class Outlet:
         self._side, self._case = case.box.faces.x_max, case
         self.x = case.box.max[0]
         self.end = self.x + layers * case.spacing
+        self._length = case.box.size[0]
         self._floor, self._gravity = case.box.min[2], -case.gravity[2]
         self._width = 1.0 if case.dimensions == 2 else case.box.size[1]
         self._head = case.water.density * self._gravity
-        self.discharge = self._invariant = self._edge = math.nan
-        self._gain = 0.0
+        self.discharge = self._mean = self._edge = math.nan
+        self._gain = self._rise = 0.0
         standing = water_at(case.water.fill, self.x - 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1]))
         self.level = standing[1] if standing else self._floor
         if self._side.level is not None:
@@ -59,16 +62,18 @@ class Outlet:
         depth = max(depth, self._case.spacing) if math.isfinite(depth) else self._case.spacing
         speed = speed if math.isfinite(speed) else 0.0
         wave, flow = math.sqrt(self._gravity * depth), speed * depth * self._width
-        if math.isnan(self._invariant):
-            self._invariant, self.discharge = speed + 2.0 * wave, flow
+        if math.isnan(self._mean):
+            self._mean, self.discharge = speed, flow
         lag = _TRAVELS * depth / max(abs(speed), 0.1 * wave)
-        share = min(dt / lag, 1.0)
-        self.discharge += share * (flow - self.discharge)
+        self.discharge += min(dt / lag, 1.0) * (flow - self.discharge)
+        self._mean += min(dt * wave / (_SWINGS * self._length), 1.0) * (speed - self._mean)
         self._pass_on(edge, min(dt / (_LAG * math.sqrt(depth / self._gravity)), 1.0))
-        out = speed + 2.0 * wave
-        self._invariant += share * (out - self._invariant)
-        rise = 0.5 * self._side.absorb * (out - self._invariant) * math.sqrt(depth / self._gravity)
-        self.level = max(self._asked(time) + rise, self._floor)
+        asked = max(self._asked(time) - self._floor, 0.0)
+        kept = 0.25 * (speed + 2.0 * wave - self._mean) + 0.5 * math.sqrt(self._gravity * asked)
+        rise = self._side.absorb * (kept * kept / self._gravity - asked)
+        travel = _AHEAD * depth / (wave + max(speed, 0.0))
+        self._rise += min(dt / travel, 1.0) * (rise - self._rise)
+        self.level = max(self._floor + asked + self._rise, self._floor)
 
     @property
     def speed(self) -> float:
@@ -122,12 +127,13 @@ class Outlet:
 
     def kept(self) -> dict[str, np.ndarray]:
         """What a restart needs."""
-        held = [self.level, self.discharge, self._invariant, self._edge, self._gain, float(self.removed)]
+        held = [self.level, self.discharge, self._mean, self._edge, self._gain, self._rise, float(self.removed)]
         return {"outlet": np.array(held)}
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
-        self.level, self.discharge, self._invariant, self._edge, self._gain, removed = map(float, kept["outlet"])
+        *held, removed = map(float, kept["outlet"])
+        self.level, self.discharge, self._mean, self._edge, self._gain, self._rise = held
         self.removed = int(removed)
 
 
