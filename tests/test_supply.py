@@ -183,6 +183,7 @@ WRONG = [
     ({"thickness": 0.12}, "drift.thickness: reaches 0.12 m, a draught of 0.108 m; water must come in under it"),
     ({"thickness": 0.01}, "drift.size, thickness: "),
     ({"size": {"kind": "uniform", "min": 0.2, "max": 0.1}}, "drift.size.min = 0.2: must not be greater than max"),
+    ({"size": 0.6}, "drift.size: reaches 0.6 m; must be at most the length of the box, 0.5 m"),
     ({"floes": 3}, "drift.floes = 3: there are 0 bodies drift_1 to drift_3"),
 ]
 

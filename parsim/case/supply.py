@@ -111,6 +111,8 @@ def _check(case, supply, found):
             f"thickness: reaches {thickest:.6g} m, a draught of {draught:.6g} m; water must come in under it, "
             f"{_UNDER:g} spacings at least, and the inlet is {depth:.6g} m deep"
         )
+    if (most := max(floe.size for floe in found)) > case.box.size[0]:
+        raise InputError(f"size: reaches {most:.6g} m; must be at most the length of the box, {case.box.size[0]:.6g} m")
     if case.dimensions == 2:
         return
     room = case.box.size[1] - 2.0 * supply.apart(case)
