@@ -73,6 +73,11 @@ def test_a_curve_is_met_in_its_own_units():
     assert measures.off_curve(run, "made", "z", off, **same) == pytest.approx(0.3 / norm)
 
 
+def test_what_is_counted_grows_over_another():
+    run = Made(time=[0.0, 1.0, 2.0, 3.0], out=[9, 10, 12, 16], let_in=[0, 20, 24, 32])
+    assert measures.growth_over(run, "made", "out", "let_in", 1.0) == 0.5
+
+
 def test_energy_and_the_balance_of_particles():
     assert measures.energy_made(Made(total=[10.0, 9.0, 10.01, 8.0])) == pytest.approx(0.001)
     assert measures.balance(Made(balance=[20, 20, 20])) == 0.0

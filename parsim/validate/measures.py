@@ -10,7 +10,7 @@ MEASURES = {
         bodies.apex, bodies.last_speed, bodies.mean_place, bodies.run_out, bodies.pile_height, bodies.floor_force,
         bodies.carried, bodies.tilt, bodies.rests, bodies.height_over, bodies.drift, series.mean, series.maximum,
         series.minimum, series.last, series.first_over, series.noise_of, series.period_of, series.damping_of,
-        series.off_curve, series.balance, series.energy_made, series.off_log_law, series.off_parabola,
-        exact.off_sway, exact.off_couette,
+        series.off_curve, series.balance, series.energy_made, series.growth_over, series.off_log_law,
+        series.off_parabola, exact.off_sway, exact.off_couette,
     )
 }  # fmt: skip

@@ -177,6 +177,14 @@ def balance(run: Run) -> float:
     return float(read.max() - read.min())
 
 
+def growth_over(run: Run, series: str, column: str, other: str, after: float) -> float:
+    """How much a column that counts grows from a time, s, on, over how much another does."""
+    read = run.series(series)
+    late = read["time"] >= after
+    grown, of = (float(read[name][late][-1] - read[name][late][0]) for name in (column, other))
+    return grown / of
+
+
 def energy_made(run: Run) -> float:
     """Largest total energy over that at the start, less one; the potential energy is over the floor."""
     total = run.series("energy")["total"]
