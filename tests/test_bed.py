@@ -238,3 +238,25 @@ def test_an_inlet_over_a_bed_gives_water_above_it_only(tmp_path):
     assert (inlet.solid == (inlet._z < ground)).mean() > 0.98 and not inlet.awake[inlet.solid].any()
     inlet.follow(0.7, 1.0, 0.1)
     assert inlet.speed.sum() * 0.01 == pytest.approx(0.1) and inlet.speed[inlet._z < ground - 0.01].max() == 0.0
+
+
+def test_floes_come_in_over_a_bed_and_clear_of_its_banks(tmp_path):
+    raster(tmp_path, channel)
+    face = 'x_min = {kind = "inlet", discharge = 0.1}'
+    floes = (
+        '[[ice.supplies]]\nname = "run"\nconcentration = 0.5\nshape = "polygon"\nsize = 0.3\nthickness = 0.2\n'
+        'density = 900.0\nmaterial = "rock"\n'
+    )
+    (tmp_path / "case.toml").write_text(CASE.replace("[bed]", f"[box.faces]\n{face}\n[bed]") + floes)
+    case = load(tmp_path / "case.toml")
+    bodies = from_case(case)
+    passage = Openings(case, case.layers, bodies).passage
+    passage.queues[0].wanted = 0.2
+    passage.turn(0.5)
+    came = passage.queues[0].rows[: passage.queues[0].next]
+    assert len(came) >= 1 and np.isfinite(bodies.lead[came]).all()
+    heights = bed_of(case.model_copy(update={"bodies": tuple(b for b in case.bodies if b.name == "bed")})).heights
+    for row in came:
+        x, y, z = bodies.position[row]
+        assert x + bodies.radius[row] < 0.3 and z == pytest.approx(0.7 - 0.18 + 0.1)
+        assert heights.at(np.zeros(1), np.array([y]))[0] < z - 0.1

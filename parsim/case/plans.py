@@ -5,14 +5,15 @@ import math
 import numpy as np
 
 from parsim.ice.outlines import Outlines, outlines
+from parsim.solid.shapes.meshed import Meshed
 
 _WAYS = 24  # directions along which a body is felt, besides those of its faces
 _STEPS = 10**7  # of a turn: directions as near as that are one
 
 
 def plan_of(place, bottom):
-    """Outlines that hold all of a body in plan; of a mesh those of its faces that reach above `bottom`, m."""
-    if place.shape.kind == "mesh":
+    """Outlines that hold all of a body in plan; of a mesh or a bed those of its faces that reach above `bottom`, m."""
+    if isinstance(place.shape, Meshed):
         points, faces = place.shape.surface()
         corners = (points @ place.axes.T + place.centre)[faces]
         corners = corners[corners[:, :, 2].max(axis=1) > bottom]

@@ -86,6 +86,11 @@ class Passage:
         driven = {joint.body for joint in case.joints}
         self._free = np.array([not body.fixed and body.name not in driven for body in case.bodies], bool)
         self._goal = np.zeros(len(bodies))  # of the speed of what is led, m/s
+        thick = [(q.supply.density / case.water.density, 2.0 * s.half[2]) for q in self.queues for s in q.shapes]
+        under = max((share * t for share, t in thick), default=0.0)
+        over = max(((1.0 - share) * t for share, t in thick), default=0.0)
+        self._band = under + 0.5 * case.spacing, over + 0.5 * case.spacing  # m about the level, in which floes come in
+        self._still: dict[int, _Near] = {}  # fixed bodies as they have been seen
 
     def advance(self, time: float, dt: float) -> None:
         """Count what supplies are to give in a step of dt at a time, s, and go on with the water there."""
@@ -137,20 +142,24 @@ class Passage:
         b, l0 = self._bodies, self._case.spacing
         rows = [row for queue in self.queues for row in queue.rows]
         reach = 2.0 * b.radius[rows].max() + 2.0 * _BRAKE * l0
-        thick = max(2.0 * shape.half[2] for queue in self.queues for shape in queue.shapes) + l0
         found = _Near(outlines([], []), np.zeros(0, int), np.zeros(0))
         for row in np.flatnonzero(~b.gone & (b.position[:, 0] - b.radius < self._inlet.x + reach)):
             there = self._place(row)
-            if there.low()[2] < self._inlet.level + thick and there.high()[2] > self._inlet.level - thick:
+            if there.low()[2] - self._band[1] < self._inlet.level < there.high()[2] + self._band[0]:
                 found = found.joined(self._seen(row))
         return found
 
     def _seen(self, row):
         """A body as it is seen near the inlet; across sides that repeat where its place leads back into the box."""
+        if row in self._still:
+            return self._still[row]
         around = self._length * np.floor((self._bodies.position[row] - self._case.box.min) / self._period)
-        plan = plan_of(self._place(row, around), self._inlet.level - 2.0 * self._bodies.radius[row])
+        plan = plan_of(self._place(row, around), self._inlet.level - self._band[0])
         count = len(plan.cx)
-        return _Near(plan, np.full(count, row), np.full(count, self._bodies.velocity[row, 0]))
+        found = _Near(plan, np.full(count, row), np.full(count, self._bodies.velocity[row, 0]))
+        if self._bodies.fixed[row]:
+            self._still[row] = found
+        return found
 
     def _place(self, row, around=0.0):
         b = self._bodies
@@ -171,7 +180,8 @@ class Passage:
         b, k, case = self._bodies, queue.next, self._case
         row, gap, every = queue.rows[k], queue.supply.apart(case), np.ones(len(near.row), bool)
         key = queue.supply.seed, queue.supply.stream, k + 1
-        flat = plan_of(Place(np.zeros(3), np.eye(3), queue.shapes[k]), -math.inf)
+        own_turn = matrices(np.array([queue.shapes[k].turn], float))[0]
+        flat = plan_of(Place(np.zeros(3), own_turn, queue.shapes[k]), -math.inf)
         dice = evenly(key, _POSES, 2 * _TRIES)
         for across, around in zip(dice[::2], dice[1::2], strict=True):
             turn = 0.0 if case.dimensions == 2 else 2.0 * math.pi * around
