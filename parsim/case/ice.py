@@ -86,7 +86,9 @@ class IceSupply(Floes):
         None, description="volume of ice that comes in, m3/s (2D: m2/s): a number, rows [time, value] or a file"
     )
     begins: NotNegative = Field(0.0, description="time from which on it comes, s")
-    ends: Positive | None = Field(None, description="time at which it ends, s; left out: the end of the run")
+    ends: Positive | None = Field(
+        None, description="time at which it ends, s; left out: the end of the run, beyond which it has no floes"
+    )
 
 
 class Ice(Table):

@@ -62,7 +62,7 @@ def _wanted(case, supply):
     """What it may have given until it ends."""
     inlet, depth, width = case.box.faces.x_min, _depth(case), width_of(case)
     share = 1.0 if inlet.profile is None else float(inlet.profile.at(depth, depth))
-    ends = case.run.until if supply.ends is None else min(supply.ends, case.run.until)
+    ends = case.run.until if supply.ends is None else supply.ends
     if ends <= supply.begins:
         return 0.0
     times = [supply.begins, ends]
