@@ -107,6 +107,6 @@ def test_shapes_joints_sides_and_boxes_that_move_have_the_same_bits(name, whole,
         assert mpirun(ranks, ["run", case, "-o", tmp_path / out, "--until", until], timeout=240).returncode == 0
     assert mpirun(1, ["resume", tmp_path / "pieces", "--until", whole], timeout=240).returncode == 0
     loads = parsim.open(tmp_path / "one").series("loads")
-    assert all(np.abs(loads["fx"][loads["kind"] == kind]).max() > 0.0 for kind in kinds)
+    assert all(np.nanmax(np.abs(loads["fx"][loads["kind"] == kind])) > 0.0 for kind in kinds)
     for out in ("three", "pieces"):
         assert main(["compare", str(tmp_path / "one"), str(tmp_path / out)]) == 0, capsys.readouterr().out
