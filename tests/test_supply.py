@@ -169,6 +169,10 @@ def test_a_supply_goes_on_from_what_it_kept():
     kept = [each.solids.openings.kept() for each in (one, two)]
     assert all(np.array_equal(kept[0][name], kept[1][name]) for name in kept[0])
     assert np.array_equal(one.bodies.gone, two.bodies.gone)
+    for each in (one, two):
+        each.solids.openings.passage.turn(one.time)
+    assert np.array_equal(*(each.solids.openings.passage._goal for each in (one, two)))
+    assert one.solids.openings.passage._goal.max() > 0.0
 
 
 WRONG = [

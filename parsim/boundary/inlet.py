@@ -223,3 +223,4 @@ class Inlet:
         self.travel, self.speed, self.first = (np.array(kept[name]) for name in ("travel", "speed", "first"))
         self.awake, self.covered = np.array(kept["awake"], bool), np.array(kept["covered"], bool)
         self.level, self.discharge, self.displaced, self._lost, self._mean = map(float, kept["inlet"])
+        self._flow()
