@@ -138,9 +138,9 @@ def disturbed(tmp_path, started):
 
 
 @pytest.mark.parametrize(("how", "rank", "said"), [
-    ("sleeps", 1, "rank 1 of 3 has made no progress for 10 s"),
-    pytest.param("stops", 0, "rank 0 of 3 has made no progress for 10 s", marks=pytest.mark.slow),
-    pytest.param("waits", 1, "has waited 30 s for a message", marks=pytest.mark.slow),
+    ("sleeps", 1, "rank 1 of 3 has made no progress for 20 s"),
+    pytest.param("stops", 0, "rank 0 of 3 has made no progress for 20 s", marks=pytest.mark.slow),
+    pytest.param("waits", 1, "has waited 60 s for a message", marks=pytest.mark.slow),
     ("raises", 1, "broken on purpose"),
     ("dies", 2, "rank 2"),
 ])  # fmt: skip
@@ -149,7 +149,7 @@ def test_one_bad_rank_ends_the_job(disturbed, how, rank, said):
     job.until(lambda: time_of(out) >= 0.0)
     begin = time.monotonic()
     assert job.end() not in (0, 75)
-    assert time.monotonic() - begin < (60.0 if how in ("sleeps", "stops", "waits") else 10.0)
+    assert time.monotonic() - begin < (100.0 if how in ("sleeps", "stops", "waits") else 10.0)
     assert said in job.said()
     assert gone(job)
     if how == "sleeps":
