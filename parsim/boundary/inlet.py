@@ -38,8 +38,8 @@ class Inlet:
 
     speed (places,), m/s; travel (places,), m; first (places,), particles that each has given to the water so far;
     solid (places,): what is fixed stands there, and the samples are a wall; covered (places,): ice comes in there, and
-    no water; displaced, m3: water that did not come in for it so far;
-    surface_speed, m/s: of the uppermost water that comes in.
+    no water; displaced, m3: water that did not come in for it so far; surface_speed, m/s: of the uppermost water that
+    comes in.
     """
 
     def __init__(self, case: Case, layers: int, fixed: list[Solid]) -> None:
@@ -81,7 +81,7 @@ class Inlet:
     def _give_way(self, level, dt):
         """Let a wave out: dV = -sqrt(g / h) dh."""
         depth, gravity = max(self._mean - self._floor, self._case.spacing), -self._case.gravity[2]
-        area = depth * (1.0 if self._case.dimensions == 2 else self._case.box.size[1])
+        area = depth * self._case.width
         lag = _TRAVELS * depth / max(self.discharge / area, 0.1 * math.sqrt(gravity * depth))
         self._mean += min(dt / lag, 1.0) * (level - self._mean)
         gone = self._side.absorb * math.sqrt(gravity / depth) * (level - self._mean) * area
@@ -211,16 +211,15 @@ class Inlet:
         """What a restart needs."""
         return {
             "travel": self.travel.copy(),
-            "speed": self.speed.copy(),
             "first": self.first.copy(),
             "awake": self.awake.astype(np.int64),
             "covered": self.covered.astype(np.int64),
-            "inlet": np.array([self.level, self.discharge, self.displaced, self._lost, self._mean]),
+            "inlet": np.array([self.level, self.discharge, self.displaced, self._mean]),
         }
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
-        self.travel, self.speed, self.first = (np.array(kept[name]) for name in ("travel", "speed", "first"))
+        self.travel, self.first = (np.array(kept[name]) for name in ("travel", "first"))
         self.awake, self.covered = np.array(kept["awake"], bool), np.array(kept["covered"], bool)
-        self.level, self.discharge, self.displaced, self._lost, self._mean = map(float, kept["inlet"])
+        self.level, self.discharge, self.displaced, self._mean = map(float, kept["inlet"])
         self._flow()

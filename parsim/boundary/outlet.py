@@ -42,7 +42,7 @@ class Outlet:
         self.end = self.x + layers * case.spacing
         self._length = case.box.size[0]
         self._floor, self._gravity = case.box.min[2], -case.gravity[2]
-        self._width = 1.0 if case.dimensions == 2 else case.box.size[1]
+        self._width = case.width
         self._head = case.water.density * self._gravity
         self.discharge = self._mean = self._edge = math.nan
         self._gain = self._rise = 0.0

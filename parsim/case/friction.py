@@ -37,11 +37,8 @@ class Eddies(Table):
 
 def faults(case):
     """What is wrong with the friction of a completed case: messages."""
-    out, friction, own = (
-        [*_sliding(case)],
-        case.water.friction,
-        [n for n, m in case.materials.items() if m.roughness is not None],
-    )
+    out, friction = [*_sliding(case)], case.water.friction
+    own = [n for n, m in case.materials.items() if m.roughness is not None]
     if not case.water.scheme.WET:
         given = [f"water.{name}" for name in ("friction", "eddies") if getattr(case.water, name) is not None]
         return [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
@@ -67,13 +64,15 @@ def _sliding(case):
     free = [body.name for body in case.bodies if not body.fixed]
     for name, velocity in zip(walls, velocities_of_walls(case).tolist(), strict=True):
         key, across = f"box.faces.{name}.velocity = {velocity}", "xyz".index(name[0])
-        if any(velocity) and velocity[across] != 0.0:
+        if not any(velocity):
+            continue
+        if velocity[across] != 0.0:
             yield f"{key}: {name[0]} must be 0; a side moves in its own plane"
-        elif any(velocity) and case.dimensions == 2 and velocity[1] != 0.0:
+        elif case.dimensions == 2 and velocity[1] != 0.0:
             yield f"{key}: y must be 0 in a 2D case"
-        elif any(velocity) and (friction is None or name not in (friction.walls or walls)):
+        elif friction is None or name not in (friction.walls or walls):
             yield f"{key}: nothing feels it; water.friction is missing, or this side is not in its walls"
-        elif any(velocity) and free:
+        elif free:
             yield f"{key}: bodies.{free[0]}: must be fixed; contacts do not feel that a side moves"
         elif math.hypot(*velocity) > case.speed:
             yield f"{key}: is more than the largest expected speed, {case.speed:.4g} m/s; give water.speed"

@@ -201,6 +201,11 @@ class Case(Table):
         return (self.water.scheme.support + self.run.skin) * self.spacing
 
     @property
+    def width(self):
+        """Width of the box across, m; a metre in 2D."""
+        return 1.0 if self.dimensions == 2 else self.box.size[1]
+
+    @property
     def axes(self):
         """Indices of the axes along which things move: (0, 1, 2), in 2D (0, 2)."""
         return (0, 2) if self.dimensions == 2 else (0, 1, 2)

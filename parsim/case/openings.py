@@ -44,7 +44,7 @@ def _inlet(case):
         yield f"level = {least(side.level):g}: must be more than a spacing above the {what}, {floor!r} m"
         return
     depth = level - case.box.min[2]
-    width = 1.0 if case.dimensions == 2 else case.box.size[1]
+    width = case.width
     mean = largest(side.discharge) / (depth * width) if depth * width > 0.0 else 0.0  # the box is told of elsewhere
     if mean > case.speed:
         yield (

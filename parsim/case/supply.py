@@ -46,11 +46,6 @@ def rate(supply, time, width, speed):
     return supply.concentration * width * speed if supply.discharge is None else at_time(supply.discharge, time)
 
 
-def width_of(case):
-    """Width of the inlet, m; a metre in 2D."""
-    return 1.0 if case.dimensions == 2 else case.box.size[1]
-
-
 def _depth(case):
     """Depth of the water at the inlet at the start, m."""
     x, y = case.box.min[0] + 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1])
@@ -60,7 +55,7 @@ def _depth(case):
 
 def _wanted(case, supply):
     """What it may have given until it ends."""
-    inlet, depth, width = case.box.faces.x_min, _depth(case), width_of(case)
+    inlet, depth, width = case.box.faces.x_min, _depth(case), case.width
     share = 1.0 if inlet.profile is None else float(inlet.profile.at(depth, depth))
     ends = case.run.until if supply.ends is None else supply.ends
     if ends <= supply.begins:
@@ -82,7 +77,7 @@ def _wrong(case, supply):
     if case.box.faces.x_min.kind != "inlet":
         yield f'name = "{supply.name}": floes come in through an inlet; box.faces.x_min must be of the kind "inlet"'
         return
-    if _depth(case) * width_of(case) <= 0.0:
+    if _depth(case) * case.width <= 0.0:
         yield f'name = "{supply.name}": there is no water at the inlet'
         return
     if (supply.concentration is None) == (supply.discharge is None):
@@ -116,7 +111,7 @@ def _check(case, supply, found):
     if case.dimensions == 2:
         return
     room = case.box.size[1] - 2.0 * supply.apart(case)
-    wide = [floe.size for floe in found if least_width(floe) > room]
+    wide = [floe.size for floe in found if _least_width(floe) > room]
     if wide:
         raise InputError(
             f"size: {len(wide)} of {len(found)} floes are wider than the inlet, the largest of {max(wide):.6g} m; it "
@@ -124,6 +119,6 @@ def _check(case, supply, found):
         )
 
 
-def least_width(floe):
+def _least_width(floe):
     """Width across of a floe that is turned lengthwise, m."""
     return floe.size if floe.round else float(floe.outline[:, 1].max() - floe.outline[:, 1].min())

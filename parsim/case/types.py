@@ -38,7 +38,7 @@ class ShortTable(Table):
     @model_serializer(mode="wrap")
     def _short(self, handler):
         data = handler(self)
-        return self.kind if not any(value is not None for key, value in data.items() if key != CHOICE) else data
+        return self.kind if all(value is None for key, value in data.items() if key != CHOICE) else data
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core, handler):

@@ -29,8 +29,8 @@ _INSIDE, _OUTSIDE, _BEFORE, _BACK = range(4)  # rows of the sums: inlet, outlet,
 class Openings:
     """Inlet at x_min and outlet at x_max of a case, each None where the side is another; exact account of particles.
 
-    passage: of bodies through them;
-    clipped: share of the water beyond the outlet that was kept from going back, its mean so far.
+    passage: of bodies through them; clipped: share of the water beyond the outlet that was kept from going back, its
+    mean so far.
     """
 
     def __init__(self, case: Case, layers: int, bodies: Bodies) -> None:

@@ -82,7 +82,7 @@ class Passage:
         self.queues = [_Queue(case, given) for given in case.ice.supplies]
         self._period = np.array(period(case))
         self._length = np.where(np.isfinite(self._period), self._period, 0.0)
-        self._width, self._level = supply.width_of(case), inlet.level if inlet else 0.0
+        self._width, self._level = case.width, inlet.level if inlet else 0.0
         driven = {joint.body for joint in case.joints}
         self._free = np.array([not body.fixed and body.name not in driven for body in case.bodies], bool)
         self._goal = np.zeros(len(bodies))  # of the speed of what is led, m/s
