@@ -49,11 +49,19 @@ def case(
     law=DEFAULT,
     rolling=0.0,
     ramp=0.0,
+    strength=None,
     **other,
 ):
     """The parts of a case that contacts read; soft materials make long sub-steps."""
     faces = dict.fromkeys([f"{a}_{s}" for a in "xyz" for s in ("min", "max")], "open") | dict.fromkeys(walls, "wall")
-    material = SimpleNamespace(young=young, poisson=0.4, friction=friction, restitution=restitution, rolling=rolling)
+    material = SimpleNamespace(
+        young=young,
+        poisson=0.4,
+        friction=friction,
+        restitution=restitution,
+        rolling=rolling,
+        crushing_strength=strength,
+    )
     numbers = SimpleNamespace(steps_per_contact=steps, law=law, pairs=())
     box = SimpleNamespace(min=(0.0, 0.0, 0.0), max=(1.0, 1.0, 1.0), faces=Faces(**faces | other))
     return SimpleNamespace(

@@ -261,7 +261,7 @@ def test_going_on_from_what_was_kept_gives_the_same_bits():
     contacts = Contacts(bodies, case())
     go(bodies, contacts, 2e-4, 100)
     kept = contacts.kept()
-    assert len(kept["key"]) > 0 and kept["stretch"].any()
+    assert len(kept["key"]) > 0 and kept["memory"].any()
     state = {name: getattr(bodies, name).copy() for name in ("position", "quaternion", "velocity", "spin")}
     other = blocks(state["position"], quaternion=state["quaternion"], velocity=state["velocity"], spin=state["spin"])
     resumed = Contacts(other, case())

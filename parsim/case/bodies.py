@@ -1,4 +1,4 @@
-"""Checks of a case's bodies, materials, gate and sensors. Each takes a completed case and returns messages."""
+"""Checks of a case's bodies, gate and sensors. Each takes a completed case and returns messages."""
 
 import math
 
@@ -36,31 +36,6 @@ def names(case):
         doubled = sorted({name for name in given if given.count(name) > 1}) if len(set(given)) < len(given) else []
         faults += [f'{key}: name = "{name}" is given more than once; names must differ' for name in doubled]
     return faults
-
-
-def materials(case):
-    """Every material that is named exists, and every pair is given once."""
-    uses = [(f"bodies.{body.name}.material", body.material) for body in case.bodies]
-    if case.wall_material is not None:
-        uses.append(("wall_material", case.wall_material))
-    pairs = [tuple(sorted(pair.between)) for pair in case.contacts.pairs]
-    uses += [(f"contacts.pairs.{i}.between", name) for i, pair in enumerate(pairs) for name in pair]
-    twice = [
-        f"contacts.pairs.{i}.between = {list(pair)}: is given already"
-        for i, pair in enumerate(pairs)
-        if pair in pairs[:i]
-    ]
-    return twice + [
-        f'{key} = "{name}": {unknown_material(name, case.materials)}'
-        for key, name in uses
-        if name not in case.materials
-    ]
-
-
-def unknown_material(name, known):
-    """Why a material is none, for the end of a message."""
-    allowed = ", ".join(known) or "none, [materials.NAME] is missing"
-    return f"no such material; allowed: {allowed}{suggestion(nearest(name, known))}"
 
 
 def bodies(case):

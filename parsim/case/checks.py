@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from parsim.case import bed, bodies, channel, friction, ice, measure, motion, openings, places, repeats
+from parsim.case import bed, bodies, channel, contacts, friction, ice, measure, motion, openings, places, repeats
 from parsim.case import fill as fills
 from parsim.errors import InputError
 from parsim.fluid import DRY
@@ -21,7 +21,7 @@ def checked(case, messages):
         raise InputError([*messages, *faults, missing])
     of_bodies = (
         bodies.names,
-        bodies.materials,
+        contacts.faults,
         bodies.bodies,
         bodies.speeds,
         bodies.overlaps,

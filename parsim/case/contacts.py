@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from parsim.case.types import Name, NotNegative, Positive, Real, Share, Table, Whole
+from parsim.errors import nearest, suggestion
 from parsim.solid.laws import DEFAULT, Law
 
 
@@ -16,6 +17,9 @@ class Material(Table):
     friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
     restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
     rolling: Share = Field(0.0, description="coefficient of rolling friction, of what is round")
+    crushing_strength: Positive | None = Field(
+        None, description="pressure, Pa, at which what it touches with is crushed; left out: never"
+    )
     roughness: NotNegative | None = Field(
         None, description="equivalent sand roughness ks of bodies of it in water, m; left out: water.friction.roughness"
     )
@@ -40,3 +44,34 @@ class Contacts(Table):
     law: Law = Field(DEFAULT, description="contact law")
     pairs: tuple[Pair, ...] = Field((), description="what holds between two materials")
     steps_per_contact: Annotated[Whole, Field(ge=5, le=10000)] = Field(20, description="steps in one contact, at least")
+
+
+def faults(case):
+    """Every material that is named exists, and every pair is given once."""
+    uses = [(f"bodies.{body.name}.material", body.material) for body in case.bodies]
+    if case.wall_material is not None:
+        uses.append(("wall_material", case.wall_material))
+    pairs = [tuple(sorted(pair.between)) for pair in case.contacts.pairs]
+    uses += [(f"contacts.pairs.{i}.between", name) for i, pair in enumerate(pairs) for name in pair]
+    twice = [
+        f"contacts.pairs.{i}.between = {list(pair)}: is given already"
+        for i, pair in enumerate(pairs)
+        if pair in pairs[:i]
+    ]
+    timeless = [
+        f"materials.{name}.crushing_strength = {material.crushing_strength!r}: contacts of the law "
+        f'"{case.contacts.law.kind}" take no time and have no pressure; leave it out, or choose another law'
+        for name, material in case.materials.items()
+        if case.contacts.law.INSTANT and material.crushing_strength is not None
+    ]
+    return [*twice, *timeless] + [
+        f'{key} = "{name}": {unknown_material(name, case.materials)}'
+        for key, name in uses
+        if name not in case.materials
+    ]
+
+
+def unknown_material(name, known):
+    """Why a material is none, for the end of a message."""
+    allowed = ", ".join(known) or "none, [materials.NAME] is missing"
+    return f"no such material; allowed: {allowed}{suggestion(nearest(name, known))}"

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from parsim.case.bodies import unknown_material
+from parsim.case.contacts import unknown_material
 from parsim.case.fill import TOUCH, water_at
 from parsim.errors import InputError
 from parsim.ice.field import fits

@@ -7,11 +7,11 @@ import math
 
 from parsim.machine.jit import kernel
 from parsim.solid.curves import spot_area
-from parsim.solid.element import friction_force, normal_force, rolling_torque
+from parsim.solid.element import friction_force, give_way, normal_force, rolling_torque
 from parsim.solid.faces import EXPECTED
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.laws.law import LINE, SPOT
-from parsim.solid.search import DEPTH, FEATURE, LAST, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
+from parsim.solid.search import CRUSHED, DEPTH, FEATURE, LAST, NORMAL, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
 from parsim.solid.separation import BALLS, gap_of_balls
 from parsim.solid.speeds import add_rate
 from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, three
@@ -41,7 +41,7 @@ def press_balls(m, touch, which, lapse, span):
         slot[DEPTH] = -apart
         age = lapse + tanks[c, LAPSE] if span > 0.0 else 0.0
         if not marks[pairs[c, LAST], TOUCHING]:
-            slot[STRETCH : ROLL + 3], marks[pairs[c, LAST], TOUCHING], age = 0.0, 1, 0.0
+            slot[STRETCH:NORMAL], marks[pairs[c, LAST], TOUCHING], age = 0.0, 1, 0.0
         law = _law(m, ab, -apart, touch.walls, touch.pair_law, touch.law, touch.forms.planar)
         _push(m, slot, tanks[c], ab, n, law, (-apart, age, span))
     return touching
@@ -72,7 +72,7 @@ def _radius(m, a, b):
 @kernel
 def _law(m, ab, deep, walls, law, number, planar):
     """(area, m2, radius, m, of what touches; force over area and depth; energy held over force times depth; damping
-    ratio; friction; tangential over normal stiffness; rolling friction)."""
+    ratio; friction; tangential over normal stiffness; rolling friction; crushing strength, Pa)."""
     a, b = ab
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
     radius = _radius(m, a, b)
@@ -80,7 +80,7 @@ def _law(m, ab, deep, walls, law, number, planar):
     area = spot_area((bend, radius), deep)
     rigid, held, more = stiffness(number, law[0, one, two], area, bend, radius, deep)
     shear = more * law[3, one, two]
-    return area, radius, rigid, held, law[1, one, two], law[2, one, two], shear, law[4, one, two]
+    return area, radius, rigid, held, law[1, one, two], law[2, one, two], shear, law[4, one, two], law[5, one, two]
 
 
 @kernel
@@ -113,8 +113,9 @@ def _arms(m, a, b, deep):
 def _push(m, slot, tank, ab, n, law, now):
     """The law for one pair with its slot and its tank; `now`: depth, m, age of its springs and span of the kick, s."""
     (a, b), (deep, age, span) = ab, now
-    area, radius, rigid, held, damping, mu, shear, rolling = law
+    area, radius, rigid, held, damping, mu, shear, rolling, strength = law
     light, arm = _lightness(m, a, b), _arms(m, a, b, deep)
+    deep, slot[CRUSHED] = give_way(deep, slot[CRUSHED], strength / rigid)
     v, spin = _slip(m, a, b, n, arm)
     dashpot = 2.0 * damping * math.sqrt(rigid / (light * area) * (0.5 / held))
     x, y, z = tank[LOADS], tank[LOADS + 1], tank[LOADS + 2]
@@ -126,7 +127,7 @@ def _push(m, slot, tank, ab, n, law, now):
         x, y, z = x - p, y - q, z - r
     ahead = 0.5 * span * (x * n[0] + y * n[1] + z * n[2] + light * springs)
     speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2]
-    normal, elastic = normal_force(rigid, dashpot, area, deep, speed + ahead)
+    normal, elastic = normal_force(rigid, dashpot, area, deep, speed + ahead, strength)
     s, roll = (slot[STRETCH], slot[STRETCH + 1], slot[STRETCH + 2]), (slot[ROLL], slot[ROLL + 1], slot[ROLL + 2])
     slip, s, energy = friction_force(s, n, v, age, mu * normal, shear * rigid * area, math.sqrt(shear) * dashpot * area)
     turn = (0.0, 0.0, 0.0)
@@ -187,7 +188,7 @@ def rate_balls(m, touch, which, steps):
 def _square(m, touch, a, b, deep):
     """Square of the angular frequency, 1/s2, of two balls on each other at a depth."""
     law = _law(m, (a, b), deep, touch.walls, touch.pair_law, touch.law, touch.forms.planar)
-    area, _, rigid, held, _, _, _, _ = law
+    area, _, rigid, held, _, _, _, _, _ = law
     return rigid * (1.0 / held - 1.0) * area * _lightness(m, a, b)
 
 

@@ -72,7 +72,8 @@ class Contacts:
         self.count, self.steps = 0, 0
         self._reacts = np.flatnonzero(bodies.joints.reacts)
         self._by_joints = np.array([b for b, *_ in bodies.joints.driven], int)
-        self._key, self._element, self._stretch = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 6))
+        self._key, self._element = np.zeros(0, np.int64), np.zeros(0, np.int64)
+        self._memory = np.zeros((0, NORMAL - STRETCH))
         self._pair, self._stored = np.zeros(0, np.int64), np.zeros((0, KEPT))
 
     def limit(self):
@@ -141,7 +142,7 @@ class Contacts:
         return {
             "key": self._key.copy(),
             "element": self._element.copy(),
-            "stretch": self._stretch.copy(),
+            "memory": self._memory.copy(),
             "pair": self._pair.copy(),
             "stored": self._stored.copy(),
             "totals": totals,
@@ -151,7 +152,7 @@ class Contacts:
         """Go on from what `kept` returned."""
         self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
         self._stored = np.array(kept["stored"], float).reshape(-1, KEPT)
-        self._stretch = np.array(kept["stretch"], float).reshape(-1, 6)
+        self._memory = np.array(kept["memory"], float).reshape(-1, NORMAL - STRETCH)
         self.dissipated, self.driven_work, self._time, self.overlap, self.residual = map(float, kept["totals"])
         self.count = len(self._key)
 
@@ -250,7 +251,7 @@ class Contacts:
         if count > len(self._marks):
             self._marks, self._slots = room_for_slots(2 * count)
             count = fill_slots(self._table, self._touch(), number, reach)
-        recall(self._marks, self._slots, count, self._key, self._element, self._stretch)
+        recall(self._marks, self._slots, count, self._key, self._element, self._memory)
         return count
 
     def _remember(self, number, count):
@@ -260,7 +261,7 @@ class Contacts:
         self._pair, self._stored = self._pairs[at, KEY], self._tanks[at, :KEPT]
         at = np.flatnonzero(self._marks[:count, TOUCHING])
         self._key, self._element = self._marks[at, SLOT_KEY], self._marks[at, ELEMENT]
-        self._stretch = self._slots[at, STRETCH:NORMAL]
+        self._memory = self._slots[at, STRETCH:NORMAL]
 
 
 def _pose(bodies):

@@ -9,10 +9,24 @@ from parsim.machine.jit import kernel
 
 
 @kernel
-def normal_force(stiffness, dashpot, area, depth, speed):
-    """Normal force of one element, N, and its elastic part. `speed`: of parting, m/s; never pulls."""
+def normal_force(stiffness, dashpot, area, depth, speed, strength):
+    """Normal force of one element, N, and its elastic part. `speed`: of parting, m/s; never pulls.
+
+    `strength`, Pa: no pressure is more than that.
+    """
     elastic = stiffness * area * depth
-    return max(elastic - dashpot * area * speed, 0.0), elastic
+    return min(max(elastic - dashpot * area * speed, 0.0), strength * area), elastic
+
+
+@kernel
+def give_way(depth, crushed, least):
+    """(elastic depth, depth crushed for good), m, of an element at `depth` of which `crushed` was already.
+
+    It gives way at the elastic depth `least`: crushing at a constant pressure, by which ice is taken to push on piers
+    (AASHTO LRFD Bridge Design Specifications, 3.9.2.2), with the energy spent.
+    """
+    deep = max(depth - crushed, 0.0)
+    return (least, depth - least) if deep > least else (deep, crushed)
 
 
 @kernel

@@ -5,12 +5,13 @@ import math
 from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
 from parsim.solid.balls import press_balls
-from parsim.solid.element import friction_force, normal_force, rolling_torque
+from parsim.solid.element import friction_force, give_way, normal_force, rolling_torque
 from parsim.solid.hollows import normal_by_elements
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.motion import answer, clear_loads
 from parsim.solid.search import (
     AREA,
+    CRUSHED,
     DEPTH,
     FEATURE,
     FIRST,
@@ -38,7 +39,7 @@ _NO_LOAD = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 def press(m, touch, island, lapse, span):
     """Loads of the pairs of an island and of its springs into the table and the tanks; how many elements touch.
 
-    `pair_law` (5, n, n): what the law needs, damping ratio, friction, shear, rolling friction over materials. `lapse`:
+    `pair_law` (6, n, n): see `laws.pairs.law_of_pairs`. `lapse`:
     time since the last call in this step, s, by which friction springs have stretched; `span`: of the kick that comes,
     s; 0 to look only. 50 ns an element that touches, 1 us a pair that overlaps.
     """
@@ -65,10 +66,10 @@ def press(m, touch, island, lapse, span):
 
 @kernel
 def coefficients(m, touch, a, b):
-    """What the law needs, damping ratio, friction, shear, rolling friction of bodies a and b, or a and wall -1 - b."""
+    """The column of `pair_law` of bodies a and b, or a and wall -1 - b."""
     law, walls = touch.pair_law, touch.walls
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
-    return law[0, one, two], law[1, one, two], law[2, one, two], law[3, one, two], law[4, one, two]
+    return law[0, one, two], law[1, one, two], law[2, one, two], law[3, one, two], law[4, one, two], law[5, one, two]
 
 
 @kernel
@@ -78,7 +79,7 @@ def hardness(m, touch, c, area):
 
     `area`, m2: what touches, by `measure` or `show`; the stiffness is that of a contact that is not narrow.
     """
-    tanks, (own, _, _, shear, _) = touch.tanks, coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])
+    tanks, (own, _, _, shear, _, _) = touch.tanks, coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])
     area /= tanks[c, SHARE]
     rigid, held, more = stiffness(touch.law, own, area, tanks[c, BEND], tanks[c, RADIUS], tanks[c, DEEP])
     return rigid, held, more * shear
@@ -118,7 +119,7 @@ def _push(m, touch, c, n, total, times):
     """
     pairs, shift, slots = touch.pairs, touch.shift, touch.slots
     a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    _, damping, mu, _, rolling = coefficients(m, touch, a, b)
+    _, damping, mu, _, rolling, strength = coefficients(m, touch, a, b)
     rigid, held, shear = hardness(m, touch, c, total)
     own = pairs[c, FEATURE] == FIELD
     if own:
@@ -126,23 +127,30 @@ def _push(m, touch, c, n, total, times):
     effective = 1.0 / compliance(m, a, b, centre_of(slots, first, last), by, n)
     dashpot = 2.0 * damping * math.sqrt(effective * rigid / total * (0.5 / held))
     motion, light = relative_motion(m, a, b, by), m[a, LIGHT] + (m[b, LIGHT] if b >= 0 else 0.0)
-    springs = rigid * _pressed_in(slots, first, last) - _along(touch.tanks, c, n)
+    springs = rigid * _pressed_in(touch, first, last, strength / rigid) - _along(touch.tanks, c, n)
     dashpot /= 1.0 + 0.5 * times[1] * dashpot * total / effective
     ahead = times[0], 0.5 * times[1] * (_parting(m, a, b, n) + light * springs)
-    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], own)
+    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], own, strength)
     touching, sheared, pressed, force, loss = _sum(touch, first, last, n, motion, ahead, law)
     load_pair(m, touch, c, sheared + pressed, sheared, force, loss)
     return touching
 
 
 @kernel
-def _pressed_in(slots, first, last):
-    """Area times depth of all elements that touch, m3."""
-    total = 0.0
+def _pressed_in(touch, first, last, least):
+    """Area times elastic depth of all elements that touch, m3; they give way at the depth `least`, m."""
+    slots, total = touch.slots, 0.0
     for slot in range(first, last + 1):
         if slots[slot, DEPTH] > 0.0:
-            total += slots[slot, AREA] * slots[slot, DEPTH]
+            total += slots[slot, AREA] * _elastic_depth(touch, slot, least)[0]
     return total
+
+
+@kernel
+def _elastic_depth(touch, slot, least):
+    """See `element.give_way`; an element that comes anew is whole."""
+    crushed = touch.slots[slot, CRUSHED] if touch.marks[slot, TOUCHING] else 0.0
+    return give_way(touch.slots[slot, DEPTH], crushed, least)
 
 
 @kernel
@@ -170,7 +178,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
     speed that the pair will have gained by the middle of the kick, m/s.
     """
     marks, slots, (lapse, sooner) = touch.marks, touch.slots, ahead
-    rigid, dashpot, mu, held, shear, (rolling, radius, own) = law
+    rigid, dashpot, mu, held, shear, (rolling, radius, own, strength) = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(shear) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -183,7 +191,9 @@ def _sum(touch, first, last, n, motion, ahead, law):
             n = three(slots, slot, NORMAL)
         x, y, z = slots[slot, POINT] - ox, slots[slot, POINT + 1] - oy, slots[slot, POINT + 2] - oz
         v = velocity_at(motion, x, y, z)
-        normal, elastic = normal_force(rigid, dashpot, area, depth, v[0] * n[0] + v[1] * n[1] + v[2] * n[2] + sooner)
+        depth, slots[slot, CRUSHED] = _elastic_depth(touch, slot, strength / rigid)
+        speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2] + sooner
+        normal, elastic = normal_force(rigid, dashpot, area, depth, speed, strength)
         s, roll, age = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
         if marks[slot, TOUCHING]:
             s, roll, age = three(slots, slot, STRETCH), three(slots, slot, ROLL), lapse

@@ -172,7 +172,7 @@ def _go_on(m, touch, points, start, way, size):
 def _relax(m, touch, points, k):
     """Bring point k to what its contact allows; by how much its velocity has changed, m/s."""
     c = points.pair[k]
-    _, _, mu, _, _ = coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])
+    mu = coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])[2]
     n, f, soft = three(points.normal, k, 0), three(points.impulse, k, 0), points.soft[k]
     v = velocity_of(m, touch, points, k)
     normal = f[0] * n[0] + f[1] * n[1] + f[2] * n[2]

@@ -7,7 +7,8 @@ to its periodic image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
 INDEX (its row in the table of elements; -1: none, -2 - k: point k along the curved side), TOUCHING; `slots`: DEPTH, m,
-AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolling friction, NORMAL where one is a mesh.
+AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolling friction, CRUSHED, m, how deep it has
+given way for good, NORMAL where one is a mesh.
 Walls, rows of eleven: normal inwards, level (normal . x > level inside), the lowest and highest corner of where they
 are, and WALL_MATERIAL.
 """
@@ -25,7 +26,8 @@ from parsim.solid.table import HALF, POSITION, pose_of, shape_of
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
-DEPTH, AREA, POINT, STRETCH, ROLL, NORMAL = 0, 1, 2, 5, 8, 11
+DEPTH, AREA, POINT, STRETCH, ROLL, CRUSHED, NORMAL = 0, 1, 2, 5, 8, 11, 12
+WIDTH = 15  # of slots; from STRETCH to NORMAL is what an element that touches keeps from step to step
 WALL_MATERIAL = 10
 
 
@@ -56,7 +58,7 @@ def room_for_pairs(count):
 
 def room_for_slots(count):
     """Empty tables of marks and slots."""
-    return np.zeros((count, 4), np.int64), np.zeros((count, 14))
+    return np.zeros((count, 4), np.int64), np.zeros((count, WIDTH))
 
 
 @kernel
@@ -108,7 +110,7 @@ def _watched(m, touch, b):
 def _mark(marks, slots, slot, key, element, index):
     if slot < len(marks):
         marks[slot, SLOT_KEY], marks[slot, ELEMENT], marks[slot, INDEX], marks[slot, TOUCHING] = key, element, index, 0
-        for k in range(14):
+        for k in range(WIDTH):
             slots[slot, k] = 0.0
     return slot + 1
 
@@ -148,8 +150,8 @@ def _list(m, touch, c, which, reach, slot):
 
 
 @kernel
-def recall(marks, slots, count, key, element, stretch):
-    """Give the listed elements the stretch they had when last they touched; both lists are in order of their keys."""
+def recall(marks, slots, count, key, element, memory):
+    """Give the listed elements the `memory` they had when last they touched; both lists are in order of their keys."""
     old = 0
     for slot in range(count):
         pair, number = marks[slot, SLOT_KEY], marks[slot, ELEMENT]
@@ -157,5 +159,4 @@ def recall(marks, slots, count, key, element, stretch):
             old += 1
         if old < key.size and key[old] == pair and element[old] == number:
             marks[slot, TOUCHING] = 1
-            for k in range(6):
-                slots[slot, STRETCH + k] = stretch[old, k]
+            slots[slot, STRETCH:NORMAL] = memory[old]

@@ -18,7 +18,7 @@ from parsim.solid.motion import (
     loads_on,
     set_back,
 )
-from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
+from parsim.solid.search import AREA, CRUSHED, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
 from parsim.solid.separation import BALLS, FIELD, ROUND_A, overlap_share, ramp_of
 from parsim.solid.speeds import add_rate
 from parsim.solid.springs import STEPS, held_by_springs, rate_springs
@@ -191,7 +191,7 @@ def elastic(m, touch, number):
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
-                pressed = held * depth * depth
+                pressed = held * max(depth - slots[slot, CRUSHED], 0.0) ** 2
                 r, rolling = three(slots, slot, ROLL), coefficients(m, touch, pairs[c, A], pairs[c, B])[4]
                 rolled = 1.125 * rolling * rolling * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
                 sheared = 0.5 * shear * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])

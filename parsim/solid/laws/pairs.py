@@ -1,13 +1,15 @@
 """What a law of contact needs of every pair of materials."""
 
+import math
+
 import numpy as np
 
 from parsim.solid.laws.law import damping_of
 
 
 def law_of_pairs(case, bodies):
-    """Table (5, n, n) over pairs of materials: what the law needs of them; damping ratio, of hard bodies
-    restitution; friction; shear; rolling friction.
+    """Table (6, n, n) over pairs of materials: what the law needs of them; damping ratio, of hard bodies
+    restitution; friction; shear; rolling friction; pressure at which the weaker of them is crushed, Pa.
 
     Restitution and friction of a pair are those given for it, else the means of the two (Canelas et al. 2016, doi
     10.1016/j.cpc.2016.05.003).
@@ -15,7 +17,7 @@ def law_of_pairs(case, bodies):
     each, names = list(case.materials.values()), list(case.materials)
     least = thinnest(bodies) if len(bodies) else 1.0
     given = {frozenset(pair.between): pair for pair in case.contacts.pairs}
-    law = np.zeros((5, len(each), len(each)))
+    law = np.zeros((6, len(each), len(each)))
     for i, one in enumerate(each):
         for j, two in enumerate(each):
             law[0, i, j] = case.contacts.law.of_pair(one, two, least)
@@ -25,6 +27,7 @@ def law_of_pairs(case, bodies):
             law[2, i, j] = _of_pair("friction", one, two, pair)
             law[3, i, j] = case.contacts.law.shear(one, two)
             law[4, i, j] = _of_pair("rolling", one, two, pair)
+            law[5, i, j] = min(one.crushing_strength or math.inf, two.crushing_strength or math.inf)
     return law
 
 
