@@ -164,7 +164,9 @@ def test_rolling_friction_holds_a_ball_to_its_angle_and_slows_it_above(law, slop
 
 def test_a_pair_of_materials_may_have_its_own_restitution_and_friction():
     given = case(restitution=0.9, friction=0.5)
-    given.materials["rail"] = SimpleNamespace(young=YOUNG, poisson=0.4, friction=0.1, restitution=0.3, rolling=0.0, crushing_strength=None)
+    given.materials["rail"] = SimpleNamespace(
+        young=YOUNG, poisson=0.4, friction=0.1, restitution=0.3, rolling=0.0, crushing_strength=None
+    )
     given.contacts.pairs = (Pair(between=("rail", "ice"), restitution=0.2),)
     law = Contacts(Bodies([], [], []), given)._pair_law
     assert law[1, 0, 1] == law[1, 1, 0] == damping_of(0.2) and law[1, 0, 0] == damping_of(0.9)
