@@ -2,6 +2,7 @@
 
 from parsim.validate import body_measures as bodies
 from parsim.validate import exact_measures as exact
+from parsim.validate import river_measures as river
 from parsim.validate import series_measures as series
 
 MEASURES = {
@@ -11,6 +12,7 @@ MEASURES = {
         bodies.carried, bodies.tilt, bodies.rests, bodies.height_over, bodies.drift, series.mean, series.maximum,
         series.minimum, series.last, series.first_over, series.noise_of, series.period_of, series.damping_of,
         series.off_curve, series.balance, series.energy_made, series.growth_over, series.off_log_law,
-        series.off_parabola, exact.off_sway, exact.off_couette,
+        series.off_parabola, exact.off_sway, exact.off_couette, river.reach_mean,
+        river.reach_most, river.jam_length,
     )
 }  # fmt: skip
