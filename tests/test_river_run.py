@@ -19,6 +19,7 @@ from parsim.river.arches import arches, at_pier
 from parsim.river.reader import River, river_of
 from parsim.river.verdicts import blocks, on_the_bed, pairs, verdict
 from parsim.study.outcomes import block_goes_under, jam_forms, jam_holds
+from parsim.validate.river_measures import jam_length, reach_mean, reach_most
 
 VOLUME = math.prod(FLOE)
 
@@ -179,6 +180,17 @@ def test_a_study_asks_for_jams_and_blocks(channel, covered):
         jam_forms(covered.run)
     with pytest.raises(InputError, match="has no table measure"):
         jam_forms(SimpleNamespace(case={}))
+
+
+def test_bars_ask_for_the_reach_and_the_jam(channel, covered):
+    """At the end: 0.02 m of rise upstream, two floes of 0.16 m on each other from 6.81 to 8.7 m."""
+    assert reach_mean(channel.run, "rise") == pytest.approx(0.02)
+    assert reach_mean(channel.run, "head_loss") == pytest.approx(0.02)
+    assert reach_most(channel.run, "jam_thickness") == pytest.approx(0.9 * 0.33 + 0.1 * 0.16, abs=0.03)
+    assert jam_length(channel.run) == pytest.approx(8.7 - 6.81, abs=0.3)
+    assert math.isnan(jam_length(covered.run))
+    with pytest.raises(InputError, match="quantity = 'rize': there is no such one; did you mean rise"):
+        reach_mean(channel.run, "rize")
 
 
 def test_a_run_is_measured_once(channel):

@@ -17,8 +17,8 @@ from parsim.case.types import CHOICE, Number, Real, Table, Whole, choice
 from parsim.errors import InputError, nearest, suggestion
 from parsim.observe.observers import TABLES
 from parsim.river import verdicts
-from parsim.river.reader import river_of
 from parsim.validate.measures import MEASURES
+from parsim.validate.river_measures import measured
 from parsim.validate.series_measures import track
 
 if TYPE_CHECKING:
@@ -68,14 +68,14 @@ def jam_holds(run: Run) -> bool:
 
 def block_goes_under(run: Run, body: str) -> bool:
     """Whether a block has not stayed at the edge of the cover, `measure.cover`: it turned under, sank or passed."""
-    known = verdicts.blocks(_river(run))
+    known = verdicts.blocks(measured(run))
     if body not in known:
         raise InputError(f"body = {body!r}: no block that drifts to a cover, measure.cover")
     return known[body].critical
 
 
 def _verdict(run):
-    found = verdicts.verdict(_river(run))
+    found = verdicts.verdict(measured(run))
     if found is None:
         raise InputError("the case looks for no jam; it needs measure.jam, and ice that is free")
     if not math.isfinite(found.window):
@@ -83,12 +83,6 @@ def _verdict(run):
             "no water flows down the reach before ice changes its level, to tell a jam by; see measure.before"
         )
     return found
-
-
-def _river(run):
-    if run.case.get("measure") is None:
-        raise InputError("the case has no table measure")
-    return river_of(run)
 
 
 class Asked(Table):

@@ -12,6 +12,7 @@ from parsim.river.reader import river_of
 
 if TYPE_CHECKING:
     from parsim.output.reader import Run
+    from parsim.river.reader import River
 
 
 def reach_mean(run: Run, quantity: str) -> float:
@@ -34,11 +35,16 @@ def jam_length(run: Run) -> float:
     return found.toe - found.head if found is not None else float("nan")
 
 
-def _ended(run):
-    """The river of a run and the time of its last frame, s."""
+def measured(run: Run) -> River:
+    """The river of a run. Raises InputError where its case has no table `measure`."""
     if run.case.get("measure") is None:
         raise InputError("the case has no table measure")
-    river = river_of(run)
+    return river_of(run)
+
+
+def _ended(run):
+    """The river of a run and the time of its last frame, s."""
+    river = measured(run)
     if not len(river.fields.time):
         raise InputError("the run has no frames")
     return river, float(river.fields.time[-1])
