@@ -78,6 +78,55 @@ def test_what_is_no_solid_is_refused_with_the_remedy(tmp_path, make, said):
         read(written(tmp_path, make()), 1.0)
 
 
+def sheet(size=(0.3, 0.2), cells=6, bend=0.0):
+    """An open sheet, its half beyond the middle turned up by an angle, degrees."""
+    x, y = (np.linspace(-0.5 * s, 0.5 * s, cells + 1) for s in size)
+    at = np.array([(a, b) for a in x for b in y])
+    up, turned = np.maximum(at[:, 0], 0.0), np.radians(bend)
+    points = np.column_stack([np.minimum(at[:, 0], 0.0) + up * np.cos(turned), at[:, 1], up * np.sin(turned)])
+    row = cells + 1
+    corners = [(i * row + j, (i + 1) * row + j, (i + 1) * row + j + 1, i * row + j + 1)
+               for i in range(cells) for j in range(cells)]  # fmt: skip
+    return trimesh.Trimesh(points, [t for a, b, c, d in corners for t in ((a, b, c), (a, c, d))], process=False)
+
+
+def test_an_open_sheet_becomes_a_shell(tmp_path):
+    mesh = read(written(tmp_path, sheet(), "a.ply"), 1.0, 0.02)
+    assert mesh.volume == pytest.approx(0.3 * 0.2 * 0.02, rel=1e-6)
+    assert np.ptp(mesh.points, axis=0) == pytest.approx((0.3, 0.2, 0.02), rel=1e-6)
+    assert mesh.moments == pytest.approx(np.array(BoxShape(size=(0.3, 0.2, 0.02)).inertia(1.0)) * mesh.volume, rel=1e-5)
+
+
+@pytest.mark.parametrize("bend", [20.0, 60.0, 90.0])
+def test_a_shell_keeps_its_thickness_round_a_bend(tmp_path, bend):
+    """The two faces are parallel: the mean surface, mitred, times the thickness."""
+    mesh = read(written(tmp_path, sheet(bend=bend), "a.ply"), 1.0, 0.02)
+    assert mesh.volume == pytest.approx(0.3 * 0.2 * 0.02, rel=1e-3)
+    shape = MeshShape(kind="mesh", file=str(tmp_path / "a.ply"), thickness=0.02)
+    assert not [*shape.faults(False)]
+    assert shape.thinnest(False) == pytest.approx(0.01, rel=0.15)
+    assert shape.samples(0.01, 0.05, False).shares.sum() * 0.01**3 == pytest.approx(mesh.volume, rel=1e-6)
+
+
+def test_a_round_shell_is_as_thick_all_over(tmp_path):
+    ball = trimesh.creation.icosphere(4, 0.1)
+    half = ball.submesh([ball.triangles_center[:, 2] > 0.0], append=True)
+    mesh = read(written(tmp_path, half, "a.ply"), 1.0, 0.01)
+    assert mesh.volume == pytest.approx(half.area * 0.01, rel=0.01)
+
+
+def test_only_an_open_surface_becomes_a_shell(tmp_path):
+    with pytest.raises(InputError, match=r"a.stl: is closed; leave shape.thickness out"):
+        read(written(tmp_path, box_of()), 1.0, 0.01)
+    mixed = sheet()
+    faces = np.array(mixed.faces)
+    faces[7] = faces[7][::-1]
+    with pytest.raises(InputError, match="some of its triangles look in, others out"):
+        read(written(tmp_path, trimesh.Trimesh(mixed.vertices, faces, process=False), "b.ply"), 1.0, 0.01)
+    with pytest.raises(InputError, match=r"close its holes, or give shape.thickness to make a shell of it"):
+        read(written(tmp_path, sheet(), "c.ply"), 1.0)
+
+
 @pytest.mark.parametrize(("name", "text", "said"), [
     ("a.step", "", "a mesh is a file of the kinds stl, obj, ply, vtu"),
     ("a.stl", "solid\nnothing", "cannot be read as stl|holds no triangles"),

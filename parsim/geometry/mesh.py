@@ -14,6 +14,7 @@ _SOLID = {
     "hexahedron": ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
 }  # sides of cells, anticlockwise seen from outside
 _SURFACE, _LESS = ("triangle", "quad"), ("vertex", "line")
+_SHARPEST = 0.3  # cosine between corner and faces of a fold, beyond which shells become thinner there
 _SAME = 1e-9  # of its size, by which corners may differ that are one
 
 
@@ -30,8 +31,11 @@ class Mesh(NamedTuple):
     centre: np.ndarray
 
 
-def read(path, scale):
-    """`Mesh` of a file, its lengths times `scale`. Raises InputError where it cannot be read or is not closed."""
+def read(path, scale, thickness=None):
+    """`Mesh` of a file, its lengths times `scale`; with a `thickness`, m, that of the `shell` along its open surface.
+
+    Raises InputError where it cannot be read, or is not closed, or is although it is to become a shell.
+    """
     kind = path.suffix[1:].lower()
     if kind not in FORMATS:
         raise InputError(f"{path}: a mesh is a file of the kinds {', '.join(FORMATS)}")
@@ -48,6 +52,8 @@ def read(path, scale):
         points, triangles = joined(scale * points, triangles, _SAME * size)
     if size == 0.0 or not len(triangles):
         raise InputError(f"{path}: holds no triangles")
+    if thickness is not None:
+        points, triangles = _thickened(points, triangles, thickness, path)
     return _placed(points, triangles, path)
 
 
@@ -82,16 +88,55 @@ def joined(points, triangles, within):
     return points[first], triangles[whole]
 
 
-def _placed(points, triangles, path):
+def _thickened(points, triangles, thickness, path):
+    edges, _, count = _edges(triangles)
+    if not (count == 1).any():
+        raise InputError(f"{path}: is closed; leave shape.thickness out, which makes a shell of an open surface")
+    return shell(points, triangles, thickness)
+
+
+def _edges(triangles):
+    """Edges (3 n, 2) of triangles (n, 3); which of those there are without regard to their sense each is, (3 n,); and
+    how many triangles have each of them."""
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     _, inverse, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+    return edges, inverse.reshape(-1), count
+
+
+def shell(points, triangles, thickness):
+    """Points and triangles of the closed shell of a thickness, m, half of it on either side of an open surface.
+
+    Corners go along the mean normal of the triangles at them, so far that flat faces keep the thickness.
+    """
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    area = np.cross(b - a, c - a)
+    normals, mean = area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-300), np.zeros_like(points)
+    for k in range(3):
+        np.add.at(mean, triangles[:, k], area)
+    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-300)
+    lean, many = np.zeros(len(points)), np.zeros(len(points))
+    for k in range(3):
+        np.add.at(lean, triangles[:, k], (normals * mean[triangles[:, k]]).sum(axis=1))
+        np.add.at(many, triangles[:, k], 1.0)
+    away = 0.5 * thickness * mean / np.maximum(lean / np.maximum(many, 1.0), _SHARPEST)[:, None]
+    edges, inverse, count = _edges(triangles)
+    rim, under = edges[count[inverse] == 1], len(points)
+    first, second = rim[:, 0], rim[:, 1]
+    sides = [np.stack([second, first, first + under], 1), np.stack([second, first + under, second + under], 1)]
+    faces = np.concatenate([triangles, triangles[:, ::-1] + under, *sides])
+    return np.concatenate([points + away, points - away]), faces
+
+
+def _placed(points, triangles, path):
+    edges, inverse, count = _edges(triangles)
     there, back = np.zeros(len(count), int), np.zeros(len(count), int)
-    np.add.at(there, inverse.reshape(-1), edges[:, 0] < edges[:, 1])
-    np.add.at(back, inverse.reshape(-1), edges[:, 0] > edges[:, 1])
+    np.add.at(there, inverse, edges[:, 0] < edges[:, 1])
+    np.add.at(back, inverse, edges[:, 0] > edges[:, 1])
     if (count == 1).any():
         raise InputError(
             f"{path}: is open: {int((count == 1).sum())} of {len(count)} edges belong to one triangle only, the first "
-            f"at {_at(points, edges, inverse, int(np.argmax(count == 1)))} m; close its holes"
+            f"at {_at(points, edges, inverse, int(np.argmax(count == 1)))} m; close its holes, or give "
+            "shape.thickness to make a shell of it"
         )
     if (there != back).any():
         raise InputError(
@@ -147,5 +192,5 @@ def _quaternion(turn):
 
 def _at(points, edges, inverse, edge):
     """Middle of an edge, as text."""
-    row = int(np.argmax(inverse.reshape(-1) == edge))
+    row = int(np.argmax(inverse == edge))
     return "(" + ", ".join(f"{v:.4g}" for v in points[edges[row]].mean(axis=0)) + ")"

@@ -1,9 +1,10 @@
-"""A closed mesh of triangles from a file, convex or not: its table, and what follows from it.
+"""A mesh of triangles from a file, convex or not, closed or made a shell: its table, and what follows from it.
 
 What takes long to import is imported where a mesh is read.
 """
 
 import functools
+import math
 from pathlib import Path
 from typing import Literal
 
@@ -23,30 +24,35 @@ _LEAST_SHARE = 0.1  # of a lattice point that a sample stands for; what is less 
 
 
 class MeshShape(Meshed):
-    """A closed surface of triangles from a file."""
+    """A closed surface of triangles from a file, or the shell along an open one."""
 
-    kind: Literal["mesh"] = Field(description="a closed mesh of triangles from a file; 3D only")
+    kind: Literal["mesh"] = Field(description="a mesh of triangles from a file; 3D only")
     file: str = Field(description="STL, OBJ, PLY or VTU; a path from where the case is, any origin")
     scale: Moderate = Field(1.0, description="length, m, of one unit of the file: 0.001 for millimetres")
+    thickness: Moderate | None = Field(
+        None, description="of the shell that an open surface becomes, m, half on either side; left out: it is closed"
+    )
     resolution: Moderate | None = Field(
-        None, description="distance between the nodes of its field, m; left out: a 64th of its longest side"
+        None,
+        description="distance between nodes of its field, m; left out: a 64th of its longest side, half of thickness",
     )
     digest: str | None = Field(None, description=DIGEST)
 
     @property
     def _mesh(self):
-        return _read(self.file, mark_of(self.file), self.scale)
+        return _read(self.file, mark_of(self.file), self.scale, self.thickness)
 
     @property
     def field(self):
         """Its signed distances: `geometry.field.Field`."""
-        return _field(self.file, mark_of(self.file), self.scale, self.step)
+        return _field(self.file, mark_of(self.file), self.scale, self.thickness, self.step)
 
     @property
     def step(self):
         """Distance between the nodes of its field, m."""
         sides = np.ptp(self._mesh.points, axis=0)
-        return self.resolution or float(max(min(sides.max() / _NODES, sides.min() / _ACROSS), sides.max() / _MOST))
+        wanted = min(sides.max() / _NODES, sides.min() / _ACROSS, 0.5 * (self.thickness or math.inf))
+        return self.resolution or float(max(wanted, sides.max() / _MOST))
 
     def told(self):
         """See `ShapeTable`."""
@@ -107,15 +113,15 @@ class MeshShape(Meshed):
 
 
 @functools.cache
-def _read(file, mark, scale):
+def _read(file, mark, scale, thickness):
     from parsim.geometry.mesh import read
 
-    return read(Path(file), scale)
+    return read(Path(file), scale, thickness)
 
 
 @functools.cache
-def _field(file, mark, scale, step):
+def _field(file, mark, scale, thickness, step):
     from parsim.geometry.field import field_of
 
-    mesh = _read(file, mark, scale)
+    mesh = _read(file, mark, scale, thickness)
     return field_of(mesh.points, mesh.triangles, step)
