@@ -83,20 +83,22 @@ def validate(
     level: Annotated[str, typer.Option(metavar="LEVEL", help="quick, or full: the long ones too")] = "quick",
     as_json: Annotated[bool, typer.Option("--json", help="print rows as JSON")] = False,
     out: given.KeptRuns = None,
+    jobs: given.Jobs = 1,
     ranks: given.RanksOfEach = 1,
     record: given.Record = None,
+    known: given.Known = None,
 ) -> int:
     """Run examples and compare them with published and exact numbers; exit code 3 if a bar is missed."""
     from parsim.validate.runs import validate as check
 
-    return check(names or [], level, as_json, out, ranks, record)
+    return check(names or [], level, as_json, out, (jobs, ranks), (record, known))
 
 
 @command
 def study(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML) that holds a table [study]")],
     out: Annotated[Path, typer.Option("-o", "--out", metavar="OUT", help="folder of all runs; one there goes on")],
-    jobs: Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")] = 1,
+    jobs: given.Jobs = 1,
     ranks: given.RanksOfEach = 1,
     threads: given.Threads = None,
     walltime: given.Walltime = None,

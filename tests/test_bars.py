@@ -3,6 +3,9 @@
 import csv
 import json
 import subprocess
+import threading
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import fake_run
@@ -97,6 +100,43 @@ def test_results_are_kept_and_brought_up_to_date(tmp_path):
     (tmp_path / "other.csv").write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match="is no table of results"):
         note(tmp_path / "other.csv", [one])
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Two cases with a bar each, whose runs are made up: {case: value}."""
+    values = {"one": 1.0, "two": 2.0}
+    held_to = {Path(f"case/{name}.toml"): [replace(BAR, case=f"case/{name}")] for name in values}
+    published = replace(number(1.0), quantity="height")
+    monkeypatch.setattr(runs, "bars", lambda names, level: held_to)
+    monkeypatch.setattr(runs, "MEASURES", {"apex": lambda run: values[run]})
+    monkeypatch.setattr(runs, "published", lambda run: [published])
+    monkeypatch.setattr(runs.parsim, "open", lambda out: out.name.split("-")[1])
+    monkeypatch.setattr(runs, "_run", lambda path, out, ranks: True)
+    return values
+
+
+def test_misses_that_are_known_are_no_failure(made, tmp_path, capsys):
+    """Exit code 3 for a bar that was met, or is new, but not for one that the table has as missed."""
+    table = tmp_path / "results.csv"
+    assert runs.validate([], "quick", False, None) == runs.MISSED
+    assert "1 of 2 bars met, 1 missed\n" in capsys.readouterr().out
+    assert runs.validate([], "quick", False, None, tables=(table, None)) == runs.MISSED
+    assert runs.validate([], "quick", False, None, tables=(None, table)) == 0
+    assert f"1 missed, 1 of them as in {table}" in capsys.readouterr().out
+    made["one"] = 1.5
+    assert runs.validate([], "quick", False, None, tables=(table, table)) == runs.MISSED
+    assert runs.validate([], "quick", False, None, tables=(None, table)) == 0, "brought up to date, it is known"
+    with pytest.raises(InputError, match=r"--known = .*nothing.csv: no such file"):
+        runs.validate([], "quick", False, None, tables=(None, tmp_path / "nothing.csv"))
+
+
+def test_cases_run_side_by_side_and_are_told_in_their_order(made, capsys, monkeypatch):
+    meeting = threading.Barrier(2, timeout=10.0)
+    monkeypatch.setattr(runs, "_run", lambda path, out, ranks: meeting.wait() >= 0)
+    assert runs.validate([], "quick", False, None, hands=(2, 1)) == runs.MISSED
+    told = capsys.readouterr().out
+    assert told.index("case/one") < told.index("case/two")
 
 
 def test_the_page_shows_every_case_and_its_pictures(tmp_path):

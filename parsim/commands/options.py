@@ -44,6 +44,10 @@ RanksOfEach = Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks 
 KeptRuns = Annotated[
     Path | None, typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there")
 ]
+Jobs = Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")]
+Known = Annotated[
+    Path | None, typer.Option(metavar="CSV", help="bars that this table of results has as missed may be missed again")
+]
 Record = Annotated[Path | None, typer.Option("--record", metavar="CSV", help="bring this table of results up to date")]
 Slurm = Annotated[bool, typer.Option("--slurm", help="write the script of a Slurm array that makes the runs")]
 OfCase = Annotated[

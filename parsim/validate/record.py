@@ -35,14 +35,21 @@ def note(path: Path, rows: Iterable[dict[str, Any]]) -> None:
     write_text(path, text.getvalue())
 
 
-def _read(path: Path) -> list[dict[str, str]]:
+def missed_in(path: Path) -> set[tuple[str, str]]:
+    """(case, quantity) of the bars that a table has as missed. Raises InputError where there is no such table."""
+    if not path.is_file():
+        raise InputError(f"--known = {path}: no such file")
+    return {(row["case"], row["quantity"]) for row in _read(path, "--known") if row["passed"] != "True"}
+
+
+def _read(path: Path, option: str = "--record") -> list[dict[str, str]]:
     if not path.is_file():
         return []
     with path.open(encoding="utf-8", newline="") as file:
         table = csv.DictReader(file)
         rows = list(table)
     if tuple(table.fieldnames or ()) != COLUMNS:
-        raise InputError(f"--record = {path}: is no table of results; its first line must be {','.join(COLUMNS)}")
+        raise InputError(f"{option} = {path}: is no table of results; its first line must be {','.join(COLUMNS)}")
     return rows
 
 
