@@ -178,13 +178,14 @@ def check(
     case: given.CaseFile,
     changes: given.Changes = None,
     until: given.Until = None,
-    ranks: Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")] = 1,
+    ranks: given.RanksToEstimate = 1,
     table: given.TableFile = None,
+    trial: given.Trial = None,
 ) -> None:
-    """Check a case, or all runs of a table, and estimate size, memory, time and disk, without running anything."""
+    """Check a case, or all runs of a table, and estimate size, memory, time and disk; runs nothing but a trial."""
     from parsim.commands.check import check_cases
 
-    check_cases(path_of(case), changes, until, ranks, table)
+    check_cases(path_of(case), changes, until, ranks, table, trial)
 
 
 @command
@@ -247,12 +248,7 @@ def schema() -> None:
 @command
 def new(
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="writes NAME.toml")] = None,
-    example: Annotated[
-        str | None,
-        typer.Option(
-            "--from", metavar="EXAMPLE", help="start from an example, or from a file of ground: then NAME is a folder"
-        ),
-    ] = None,
+    example: given.Example = None,
     listed: Annotated[bool, typer.Option("--list", help="print the examples")] = False,
     first: given.FirstStation = None,
     last: given.LastStation = None,

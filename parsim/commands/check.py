@@ -8,6 +8,7 @@ from parsim.case import runs_table as tables
 from parsim.case.estimate import brief, lines
 from parsim.case.file import read
 from parsim.case.load import load
+from parsim.commands.trial import told, tried
 from parsim.errors import InputError
 
 
@@ -30,9 +31,20 @@ def _study(path, ranks):
 
 
 def check_cases(
-    path: Path | str, changes: Iterable[str] | None, until: float | None, ranks: int, table: Path | str | None = None
+    path: Path | str,
+    changes: Iterable[str] | None,
+    until: float | None,
+    ranks: int,
+    table: Path | str | None = None,
+    trial: float | None = None,
 ) -> None:
-    """Print what a case will cost on `ranks` ranks; with a `table` (CSV file) that of each row. Raises InputError."""
+    """Print what a case will cost on `ranks` ranks; with a `table` (CSV file) that of each row.
+
+    `trial`, s: run it so long, on these ranks of this machine, and print what the whole would take at that pace. Raises
+    InputError, also where it can't be tried.
+    """
+    if table and trial:
+        raise InputError("--trial: tries one case; leave --table out")
     if table:
         _every_row(path, changes, until, ranks, table)
         return
@@ -40,6 +52,8 @@ def check_cases(
     _check_ranks(case, ranks)
     study = _study(Path(path), ranks)
     print(f"{path}: a valid case", *lines(case, ranks), *ice.told(case), *study, sep="\n")
+    if trial:
+        print(f"trial      {told(case, tried(path, changes, until, ranks, trial), ranks)}")
     for warning in case.warnings():
         print(f"warning: {warning}")
 

@@ -40,9 +40,19 @@ RiverReach = Annotated[
 Scale = Annotated[
     float, typer.Option(min=1e-6, metavar="M", help="m of one unit of the file of a reach: 0.3048 for feet")
 ]
+RanksToEstimate = Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks to estimate for")]
+Trial = Annotated[
+    float | None, typer.Option(min=1.0, metavar="S", help="run it for S seconds here, and tell the time by that")
+]
 RanksOfEach = Annotated[int, typer.Option("-n", min=1, metavar="N", help="ranks of each run")]
 KeptRuns = Annotated[
     Path | None, typer.Option("-o", "--out", metavar="OUT", help="keep the runs in this folder, and use those there")
+]
+Example = Annotated[
+    str | None,
+    typer.Option(
+        "--from", metavar="EXAMPLE", help="start from an example, or from a file of ground: then NAME is a folder"
+    ),
 ]
 Jobs = Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")]
 Known = Annotated[
