@@ -20,6 +20,13 @@ NAMES = [str(file.relative_to(ROOT / "cases")) for file in FILES]
 # what cases are warned of: fills that the spacing does not divide or of few rows, bodies of few particles
 KNOWN = {f"ice_release/{blocks}_blocks_10mm.toml": ["water.fill.1"] for blocks in (4, 9)}
 KNOWN |= {f"marin/{spacing}mm.toml": ["water.fill.0"] for spacing in (20, 40)} | {"one_cube/50mm.toml": ["bodies.cube"]}
+KNOWN |= {
+    "arching/opening_01.toml": ["bodies.right and 1 more", "ice.fields.floe"],
+    "arching/opening_04.toml": ["ice.fields.floe"],
+    "jam/steady_10.toml": ["bodies.floe_1 and 36 more", "ice.supplies.floe"],
+    "jam/surge_10.toml": ["bodies.floe_1 and 35 more", "ice.supplies.floe"],
+    "piers/80mm.toml": ["bodies.pier_1 and 6 more", "bodies.floe_1 and 599 more"],
+}
 
 
 @pytest.fixture
