@@ -229,7 +229,7 @@ def test_a_run_of_an_example_takes_its_reference_along(solver, tmp_path, monkeyp
     (["check", "4_blocks_dry"], "no such file; did you mean ice_release/4_blocks_dry?"),
     (["check", "river"], "error: river: no such file\n"),
     (["new", "mine", "--from", "9_blocks_dri"], "; did you mean ice_release/9_blocks_dry?"),
-    (["new", "mine", "--from", "river"], "--from river: no such example; allowed: arching/opening_04, "),
+    (["new", "mine", "--from", "river"], "--from river: no such example; allowed: arching/opening_01, "),
     (["new"], "NAME: missing"),
 ])  # fmt: skip
 def test_an_unknown_example_is_told_with_the_nearest(words, said, tmp_path, capsys, monkeypatch):
