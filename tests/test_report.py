@@ -8,6 +8,7 @@ import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import fake_run
 import numpy as np
@@ -302,3 +303,31 @@ def test_what_flows_through_a_channel_is_shown(tmp_path):
         "10 floes came in, 5 went out, 5 are inside; the way in was blocked for 0.3 s, 2 were due"
     )
     assert [len(drawn.axes) for drawn in (flow.openings(run), flow.channel(run), flow.ice(run))] == [2, 2, 2]
+
+
+def test_many_bodies_are_told_together_and_fixed_ones_not(run, monkeypatch):
+    """Quantiles in place of a row for each."""
+    track = next(iter(bodies.body_tracks(run).values()))
+    tracks = {f"b{k}": track | {"x": track["x"] + 0.01 * k} for k in range(21)}
+    case = run.case | {"bodies": [{"name": "b20", "fixed": True}]}
+    many = SimpleNamespace(case=case, body_names=[*tracks])
+    monkeypatch.setattr(bodies, "body_tracks", lambda run: tracks)
+    monkeypatch.setattr(bodies, "draught", lambda run, name, track: None)
+    monkeypatch.setattr(bodies, "archimedes_draught", lambda run, name: 0.017)
+    monkeypatch.setattr(bodies, "compared_until", lambda run: 1.1)
+    words = bodies.told(many)
+    first = float(track["x"][track["time"] >= 0].max())
+    assert "b7" not in words and words.count("<tr>") == 6, "by Archimedes, X at two times, largest X, when"
+    assert f'<td class="number">20</td><td class="number">{first:.4g}</td>' in words
+    assert f'<td class="number">{first + 0.19:.4g}</td></tr>' in words, "without the fixed one"
+    assert bodies.trajectories(many).axes[0].texts == []
+
+
+def test_of_water_that_flows_through_no_loss_is_told(run, monkeypatch):
+    before = summary(run)
+    assert any("Energy created" in line for line in before) and any("Volume within" in line for line in before)
+    faces = run.case["box"].get("faces", {}) | {"x_min": {"kind": "inlet", "discharge": 0.1}}
+    monkeypatch.setitem(run.case["box"], "faces", faces)
+    after = summary(run)
+    assert not any("Energy created" in line or "Volume within" in line for line in after)
+    assert any(line.startswith("Particles at most 0 in walls") for line in after)

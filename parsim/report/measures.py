@@ -99,6 +99,15 @@ def verdict(value: float | None, number: Published) -> str:
     return f"{abs(value - nearest):.3g} {number.unit} {'below' if value < nearest else 'above'}{share}"
 
 
+MANY = 12  # bodies and more are told, drawn and named together
+
+
+def flows_through(run: Run) -> bool:
+    """Whether water comes in or goes out at a side: what it carries is no loss, nor made of nothing."""
+    faces = run.case.get("box", {}).get("faces", {})
+    return any(isinstance(face, dict) and face.get("kind") in ("inlet", "outlet") for face in faces.values())
+
+
 def mean_profile(series: dict[str, np.ndarray], line: str, after: float) -> tuple[np.ndarray, np.ndarray]:
     """Heights, m, on a line of the series of velocities, and the mean velocity downstream there after a time, s."""
     here = (series["line"] == line) & (series["time"] >= after)

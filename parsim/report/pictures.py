@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
+from parsim.report.measures import MANY
 from parsim.report.painter import paint
 from parsim.report.scene import BOX_EDGES, FRONT, OBLIQUE, TOP, VIEWS, box_corners, load
 
@@ -102,7 +103,7 @@ def show(axes: Axes, gallery: Gallery, scene: Scene, frame: int, view: View, lab
     _edges(axes, corners, hidden=True)
     axes.imshow(image, extent=extent, interpolation="antialiased", zorder=2)
     _edges(axes, corners, hidden=False)
-    if labels:
+    if labels and len(scene.names) < MANY:
         _names(axes, scene, view)
     axes.set_xlim(extent[:2])
     axes.set_ylim(extent[2:])

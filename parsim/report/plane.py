@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
+from parsim.report.measures import MANY
 from parsim.report.scene import load
 
 if TYPE_CHECKING:
@@ -68,8 +69,9 @@ def _frame(axes, scene):
             linewidths=1,
         )
     )
-    for name, place in zip(scene.names, scene.position, strict=True):
-        axes.text(place[0], place[2], name, ha="center", va="center", fontsize=8, fontweight="bold")
+    for body in np.unique(scene.body) if len(scene.names) < MANY else ():
+        x, _, z = scene.position[body]
+        axes.text(x, z, scene.names[body], ha="center", va="center", fontsize=8, fontweight="bold")
     if scene.gate:
         (x0, _, z0), (x1, _, z1) = scene.gate
         axes.fill([x0, x1, x1, x0], [z0, z0, z1, z1], color="#6b7280", alpha=0.8)

@@ -24,11 +24,11 @@ from parsim.report.sections import (
 
 SECTIONS = (
     outcome,
+    river,
     published,
     pictures,
     bodies,
     profiles,
-    river,
     flow,
     front,
     energy,

@@ -8,7 +8,7 @@ import numpy as np
 
 from parsim.case.model import Body
 from parsim.report.curves import INK, LINES, figure, name_ends
-from parsim.report.measures import asked, columns, published
+from parsim.report.measures import MANY, asked, columns, published
 from parsim.report.page import section, table
 from parsim.report.scene import body_colours
 
@@ -102,9 +102,13 @@ def _shape(body):
 
 
 def told(run: Run) -> str:
-    """A table with a row for each body: draught, places at `report.places`, largest x."""
+    """A table with a row for each body that is free: draught, places at `report.places`, largest x; of many bodies with
+    a row for each of these."""
     rows, times, end = [], asked(run, "places", ()), compared_until(run)
+    fixed = {body["name"] for body in run.case.get("bodies", ()) if body.get("fixed")}
     for name, track in body_tracks(run).items():
+        if name in fixed:
+            continue
         places = [at_time(track, "x", time) for time in times]
         best = largest_x(track, end) or (None, None)
         rows.append((name, draught(run, name, track), archimedes_draught(run, name), *places, *best))
@@ -116,7 +120,17 @@ def told(run: Run) -> str:
         f"largest X to {end:.3g} s (m)",
         "when (s)",
     )
-    return table(titles, rows)
+    return table(titles, rows) if len(rows) < MANY else _told_together(titles[1:], rows)
+
+
+def _told_together(titles, rows):
+    """A row for each quantity of many bodies."""
+    found = []
+    for title, values in zip(titles, list(zip(*rows, strict=True))[1:], strict=True):
+        known = np.array([value for value in values if value is not None])
+        if len(known):
+            found.append((title, len(known), *(float(v) for v in np.quantile(known, (0.0, 0.1, 0.5, 0.9, 1.0)))))
+    return table(("of the bodies that are free", "bodies", "least", "10 %", "median", "90 %", "most"), found)
 
 
 def trajectories(run: Run) -> Figure | None:
@@ -129,9 +143,11 @@ def trajectories(run: Run) -> Figure | None:
     for each, key in zip(axes[0], "xz", strict=True):
         ends = []
         for number, (name, track) in enumerate(tracks.items()):
-            each.plot(track["time"], track[key], LINES[number % 4], color=colours[name], linewidth=1.8)
+            style = {"linewidth": 0.6, "alpha": 0.6} if len(tracks) >= MANY else {"linewidth": 1.8}
+            each.plot(track["time"], track[key], LINES[number % 4], color=colours[name], **style)
             ends.append((name, track["time"][-1], track[key][-1], colours[name]))
-        name_ends(each, ends)
+        if len(tracks) < MANY:
+            name_ends(each, ends)
         each.set_xlabel("time (s)")
         each.set_ylabel(f"{key.upper()} of the centre (m)")
     _published_x(axes[0, 0], run, colours)

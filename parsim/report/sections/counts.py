@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.report.curves import WATER, figure
-from parsim.report.measures import columns, percent, wet
+from parsim.report.measures import columns, flows_through, percent, wet
 from parsim.report.page import section
 
 if TYPE_CHECKING:
@@ -39,7 +39,9 @@ def lines(run: Run) -> list[str]:
         return []
     drift = np.max(np.abs(counts["volume"] / counts["volume"][0] - 1))
     leaks = [f"{counts[name].max()} {name.replace('_', ' ')}" for name in LEAKS if name in counts]
-    return [f"Volume within {percent(drift)} of its first value; particles at most " + ", ".join(leaks) + "."]
+    volume = "" if flows_through(run) else f"Volume within {percent(drift)} of its first value; "
+    told = f"{volume}particles at most {', '.join(leaks)}."
+    return [told[0].upper() + told[1:]]
 
 
 def volume(run: Run) -> Figure | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.report.curves import ACCENT, INK, figure
-from parsim.report.measures import columns, percent
+from parsim.report.measures import columns, flows_through, percent
 from parsim.report.page import section
 
 if TYPE_CHECKING:
@@ -30,7 +30,9 @@ def parts(page: Page) -> str:
             energy(page.run),
             "Curves of the parts of the energy over time.",
             "All parts of the energy and their sum; below, what was created: positive is energy from nothing, "
-            "negative is dissipation. W is the work done from outside.",
+            "negative is dissipation. W is the work done from outside."
+            + " What water brings in and takes out is not counted: the sum says nothing here."
+            * flows_through(page.run),
         ),
     )
 
@@ -38,7 +40,7 @@ def parts(page: Page) -> str:
 def lines(run: Run) -> list[str]:
     """What was created at most, for the summary."""
     series = columns(run, "energy")
-    if series is None:
+    if series is None or flows_through(run):
         return []
     created = np.max(energy_created(series)[1], initial=0.0)
     return [f"Energy created, at most: {percent(created)} of that at the start."]

@@ -37,8 +37,8 @@ def _snapshot(page, frame, time):
         name,
         snapshot(page.gallery, frame),
         f"Water, gate and named bodies at {moment}, oblique, front and top view.",
-        f"{moment}: from the side and above, from the front (flow to the right), and from above. "
-        "Look at where the bodies ride on the wave, and the height of the gate (grey).",
+        f"{moment}: from the side and above, from the front, and from above. "
+        + "The gate is grey." * bool(page.run.case.get("gate")),
     )
 
 
