@@ -310,7 +310,7 @@ def test_many_bodies_are_told_together_and_fixed_ones_not(run, monkeypatch):
     track = next(iter(bodies.body_tracks(run).values()))
     tracks = {f"b{k}": track | {"x": track["x"] + 0.01 * k} for k in range(21)}
     case = run.case | {"bodies": [{"name": "b20", "fixed": True}]}
-    many = SimpleNamespace(case=case, body_names=[*tracks])
+    many = SimpleNamespace(case=case, body_names=[*tracks], folder=run.folder, info=run.info)
     monkeypatch.setattr(bodies, "body_tracks", lambda run: tracks)
     monkeypatch.setattr(bodies, "draught", lambda run, name, track: None)
     monkeypatch.setattr(bodies, "archimedes_draught", lambda run, name: 0.017)
