@@ -320,7 +320,7 @@ def test_many_bodies_are_told_together_and_fixed_ones_not(run, monkeypatch):
     assert "b7" not in words and words.count("<tr>") == 6, "by Archimedes, X at two times, largest X, when"
     assert f'<td class="number">20</td><td class="number">{first:.4g}</td>' in words
     assert f'<td class="number">{first + 0.19:.4g}</td></tr>' in words, "without the fixed one"
-    assert bodies.trajectories(many).axes[0].texts == []
+    assert not [*bodies.trajectories(many).axes[0].texts]
 
 
 def test_of_water_that_flows_through_no_loss_is_told(run, monkeypatch):
