@@ -14,6 +14,7 @@ from parsim.errors import InputError
 REACH = {"length": 0.6, "height": 0.2, "spacing": 0.01, "fill": (0.6, 0.1)}
 INLET = {"kind": "inlet", "discharge": 0.04}
 OUTLET = {"kind": "outlet", "level": 0.1}
+TABLE = {"kind": "table", "heights": [0.0, 0.1]}
 
 
 def reach(inlet=None, outlet=None, velocity=0.4, across=None, **changes):
@@ -207,6 +208,11 @@ WRONG = [
     ({"x_min": INLET | {"discharge": [[1.0, 0.1], [1.0, 0.2]]}}, "x_min.discharge: time 1 after 1 s: times must grow"),
     ({"x_min": INLET | {"level": 0.005}}, "x_min.level = 0.005: must be more than a spacing above the floor"),
     ({"x_min": INLET | {"profile": {"kind": "log", "roughness": 5.0}}}, "profile.roughness = 5.0: must be less than"),
+    ({"x_min": INLET | {"level": 0.3}}, "x_min.level = 0.3: must be below the top of the box, 0.2 m"),
+    ({"x_min": INLET | {"level": [[0.0, 0.1], [9.0, 0.015]]}}, "discharge = 0.04: is 2.667 m/s through 0.015 m2, more"),
+    ({"x_min": INLET | {"profile": TABLE | {"shares": [2.0, -0.5]}}}, "profile.shares = [2.0, -0.5]: must be 0"),
+    ({"x_min": INLET | {"profile": TABLE | {"shares": [0.0, 0.0]}}}, "profile.shares = [0.0, 0.0]: must not all be 0"),
+    ({"x_max": {"kind": "outlet", "rating": [[0.0, 0.1], [1.0, 9.0]]}}, "rating: level = 9: must be below the top"),
     ({"x_max": {"kind": "outlet"}}, "level, rating, normal: none given; must be exactly one"),
     ({"x_max": OUTLET | {"rating": [[0.0, 0.1], [1.0, 0.2]]}}, "level and rating given; must be exactly one"),
     ({"x_max": {"kind": "outlet", "level": -0.1}}, "x_max.level = -0.1: must be above the floor"),

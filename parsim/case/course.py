@@ -32,6 +32,11 @@ def least(course):
     return course if isinstance(course, float) else min(value for _, value in course)
 
 
+def times_of(*courses):
+    """The times, s, between which each `Course`, if it is given, is straight."""
+    return sorted({time for course in courses if not isinstance(course, float | None) for time, _ in course})
+
+
 def wrong_course(key, course):
     """What is wrong with a quantity that changes with time: messages."""
     if isinstance(course, float):
