@@ -243,6 +243,13 @@ def test_an_inlet_without_water_is_told():
         parse(given)
 
 
+def test_levels_may_be_below_zero():
+    given = reach({"level": -0.3}, OUTLET | {"level": [[0.0, -0.3], [9.0, -0.35]]})
+    given["box"] |= {"min": [0.0, 0.0, -0.4], "max": [0.6, 1.0, 0.1]}
+    given["water"]["fill"][0] |= {"min": [0.0, 0.0, -0.4], "max": [0.6, 1.0, -0.3]}
+    assert parse(given).box.faces.x_max.level[1] == (9.0, -0.35)
+
+
 def test_the_row_of_the_series_balances():
     from parsim.observe.openings import Openings
 

@@ -27,6 +27,11 @@ def largest(course):
     return abs(course) if isinstance(course, float) else max(abs(value) for _, value in course)
 
 
+def highest(course):
+    """The largest value of a `Course`, with its sign."""
+    return course if isinstance(course, float) else max(value for _, value in course)
+
+
 def least(course):
     """The least value of a `Course`."""
     return course if isinstance(course, float) else min(value for _, value in course)

@@ -6,7 +6,7 @@ import numpy as np
 
 from parsim.case import places
 from parsim.case.bodies import placed
-from parsim.case.course import at_time, largest, least, times_of, wrong_course
+from parsim.case.course import at_time, highest, least, times_of, wrong_course
 from parsim.case.fill import water_at
 from parsim.geometry.faces import SIDES
 from parsim.solid.shapes.bed import BedShape
@@ -46,7 +46,7 @@ def _inlet(case):
         if least(side.level) <= floor + case.spacing:
             yield f"level = {least(side.level):g}: must be more than a spacing above the {what}, {floor!r} m"
             return
-        yield from _over_the_top(case, "level", largest(side.level))
+        yield from _over_the_top(case, "level", highest(side.level))
     yield from _fast(case)
     if side.profile is not None:
         depth = (standing[1] if side.level is None else at_time(side.level, 0.0)) - case.box.min[2]
@@ -127,7 +127,7 @@ def _outlet(case):
     floor, what = _ground(case, case.box.max[0])
     if side.level is not None:
         yield from wrong_course("level", side.level)
-        low, high = least(side.level), largest(side.level)
+        low, high = least(side.level), highest(side.level)
         if low <= floor:
             yield f"level = {low:g}: must be above the {what}, {floor!r} m"
         yield from _over_the_top(case, "level", high)
