@@ -132,11 +132,22 @@ def test_water_goes_on_beyond_the_outlet_and_not_back():
 
 @pytest.mark.parametrize(("flow", "manning", "slope"), [(0.1435, 0.0213, 0.002), (5.0, 0.03, 0.0005)])
 def test_normal_depth(flow, manning, slope):
-    depth = normal_depth(flow, manning, slope, None)
+    depth = normal_depth(flow, manning, slope, 1.0, 0)
     assert depth ** (5 / 3) * math.sqrt(slope) / manning == pytest.approx(flow)
-    depth, width = normal_depth(3.0 * flow, manning, slope, 3.0), 3.0
-    area = width * depth
-    assert area * (area / (width + 2.0 * depth)) ** (2 / 3) * math.sqrt(slope) / manning == pytest.approx(3.0 * flow)
+    for width in (3.0, 0.01):
+        depth = normal_depth(width * flow, manning, slope, width, 2)
+        area = width * depth
+        through = area * (area / (width + 2.0 * depth)) ** (2 / 3) * math.sqrt(slope) / manning
+        assert through == pytest.approx(width * flow)
+    assert normal_depth(0.0, manning, slope, 3.0, 2) == 0.0
+
+
+def test_the_normal_depth_between_sides_that_repeat_is_that_of_a_wide_channel():
+    given = reach({"discharge": 0.002}, {"kind": "outlet", "normal": {"manning": 0.02, "slope": 0.0013}}, across=0.05)
+    given["box"]["faces"] |= {"y_min": "periodic", "y_max": "periodic"}
+    out = simulation(given).solids.openings.outlet
+    out.discharge = 0.002
+    assert out._asked(0.0) == pytest.approx((0.02 * 0.04 / math.sqrt(0.0013)) ** 0.6)
 
 
 @pytest.mark.parametrize(("outlet", "level"), [
