@@ -236,6 +236,14 @@ def test_a_concentration_is_that_of_the_surface_between_banks():
     assert queue.wanted == pytest.approx(0.01 * 0.9 * 0.12 * inlet.surface_speed)
 
 
+@pytest.mark.parametrize("aspect", [2.14, 2.0])
+def test_a_floe_that_fits_only_lengthwise_comes_in_so(aspect):
+    s = simulation(reach(across=0.16, size=0.3, aspect=aspect, shape="box", until=20.0))
+    passage = s.solids.openings.passage
+    queue, nothing = passage.queues[0], passage._near()
+    assert not nothing.row.size and all(passage._enters(queue, nothing, 0.0) for _ in range(12))
+
+
 def test_what_is_near_the_inlet_is_seen_at_the_level_of_now_and_across_sides_that_repeat(tmp_path):
     trimesh.creation.icosphere(3, 0.06).export(tmp_path / "ball.stl")
     shape = {"kind": "mesh", "file": str(tmp_path / "ball.stl")}

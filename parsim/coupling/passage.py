@@ -28,11 +28,12 @@ if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.solid.bodies import Bodies
 
-_TRIES = 50  # poses that are looked at for a floe
+_TRIES = 50  # poses that are looked at for a floe, the last of them lengthwise: so all fit through the inlet
 _POSES = 3  # part of a floe's counter of draws
 _INSIDE = 1.0  # spacings inside the inlet at which a floe is let go
 _BRAKE = 2.0  # spacings in which one that is led comes to a stop: the water is not to feel a blow
 _NEAR = 0.25  # spacings from what is in its way at which it stands
+_ROUNDING = 1e-3  # spacings by which an outline may be wider than its floe
 _STEP = 0.25  # spacings of the height over which fixed bodies are seen: they are looked at anew as the level changes it
 
 
@@ -190,12 +191,12 @@ class Passage:
         own_turn = matrices(np.array([queue.shapes[k].turn], float))[0]
         flat = plan_of(Place(np.zeros(3), own_turn, queue.shapes[k]), -math.inf)
         dice = evenly(key, _POSES, 2 * _TRIES)
-        for across, around in zip(dice[::2], dice[1::2], strict=True):
+        for across, around in zip(dice[::2], [*dice[1:-1:2], 0.0], strict=True):
             turn = 0.0 if case.dimensions == 2 else 2.0 * math.pi * around
             at, heading = np.zeros(1), (np.array([math.cos(turn)]), np.array([math.sin(turn)]))
             _, low, front, high = (float(end[0]) for end in moved(flat, at, at, *heading).extents())
             left, right = case.box.min[1] + gap - low, case.box.max[1] - gap - high
-            if case.dimensions == 3 and left > right:
+            if case.dimensions == 3 and left > right + _ROUNDING * case.spacing:
                 continue
             x = self._inlet.x - gap - front
             y = 0.5 if case.dimensions == 2 else left + across * (right - left)
