@@ -14,6 +14,7 @@ from parsim.errors import InputError
 REACH = {"length": 0.6, "height": 0.2, "spacing": 0.01, "fill": (0.6, 0.1)}
 INLET = {"kind": "inlet", "discharge": 0.04}
 OUTLET = {"kind": "outlet", "level": 0.1}
+TABLE = {"kind": "table", "heights": [0.0, 0.1]}
 
 
 def reach(inlet=None, outlet=None, velocity=0.4, across=None, **changes):
@@ -131,11 +132,22 @@ def test_water_goes_on_beyond_the_outlet_and_not_back():
 
 @pytest.mark.parametrize(("flow", "manning", "slope"), [(0.1435, 0.0213, 0.002), (5.0, 0.03, 0.0005)])
 def test_normal_depth(flow, manning, slope):
-    depth = normal_depth(flow, manning, slope, None)
+    depth = normal_depth(flow, manning, slope, 1.0, 0)
     assert depth ** (5 / 3) * math.sqrt(slope) / manning == pytest.approx(flow)
-    depth, width = normal_depth(3.0 * flow, manning, slope, 3.0), 3.0
-    area = width * depth
-    assert area * (area / (width + 2.0 * depth)) ** (2 / 3) * math.sqrt(slope) / manning == pytest.approx(3.0 * flow)
+    for width in (3.0, 0.01):
+        depth = normal_depth(width * flow, manning, slope, width, 2)
+        area = width * depth
+        through = area * (area / (width + 2.0 * depth)) ** (2 / 3) * math.sqrt(slope) / manning
+        assert through == pytest.approx(width * flow)
+    assert normal_depth(0.0, manning, slope, 3.0, 2) == 0.0
+
+
+def test_the_normal_depth_between_sides_that_repeat_is_that_of_a_wide_channel():
+    given = reach({"discharge": 0.002}, {"kind": "outlet", "normal": {"manning": 0.02, "slope": 0.0013}}, across=0.05)
+    given["box"]["faces"] |= {"y_min": "periodic", "y_max": "periodic"}
+    out = simulation(given).solids.openings.outlet
+    out.discharge = 0.002
+    assert out._asked(0.0) == pytest.approx((0.02 * 0.04 / math.sqrt(0.0013)) ** 0.6)
 
 
 @pytest.mark.parametrize(("outlet", "level"), [
@@ -207,6 +219,11 @@ WRONG = [
     ({"x_min": INLET | {"discharge": [[1.0, 0.1], [1.0, 0.2]]}}, "x_min.discharge: time 1 after 1 s: times must grow"),
     ({"x_min": INLET | {"level": 0.005}}, "x_min.level = 0.005: must be more than a spacing above the floor"),
     ({"x_min": INLET | {"profile": {"kind": "log", "roughness": 5.0}}}, "profile.roughness = 5.0: must be less than"),
+    ({"x_min": INLET | {"level": 0.3}}, "x_min.level = 0.3: must be below the top of the box, 0.2 m"),
+    ({"x_min": INLET | {"level": [[0.0, 0.1], [9.0, 0.015]]}}, "discharge = 0.04: is 2.667 m/s through 0.015 m2, more"),
+    ({"x_min": INLET | {"profile": TABLE | {"shares": [2.0, -0.5]}}}, "profile.shares = [2.0, -0.5]: must be 0"),
+    ({"x_min": INLET | {"profile": TABLE | {"shares": [0.0, 0.0]}}}, "profile.shares = [0.0, 0.0]: must not all be 0"),
+    ({"x_max": {"kind": "outlet", "rating": [[0.0, 0.1], [1.0, 9.0]]}}, "rating: level = 9: must be below the top"),
     ({"x_max": {"kind": "outlet"}}, "level, rating, normal: none given; must be exactly one"),
     ({"x_max": OUTLET | {"rating": [[0.0, 0.1], [1.0, 0.2]]}}, "level and rating given; must be exactly one"),
     ({"x_max": {"kind": "outlet", "level": -0.1}}, "x_max.level = -0.1: must be above the floor"),
@@ -235,6 +252,13 @@ def test_an_inlet_without_water_is_told():
     given["water"] = {}
     with pytest.raises(InputError, match='x_min = "inlet": there is no water'):
         parse(given)
+
+
+def test_levels_may_be_below_zero():
+    given = reach({"level": -0.3}, OUTLET | {"level": [[0.0, -0.3], [9.0, -0.35]]})
+    given["box"] |= {"min": [0.0, 0.0, -0.4], "max": [0.6, 1.0, 0.1]}
+    given["water"]["fill"][0] |= {"min": [0.0, 0.0, -0.4], "max": [0.6, 1.0, -0.3]}
+    assert parse(given).box.faces.x_max.level[1] == (9.0, -0.35)
 
 
 def test_the_row_of_the_series_balances():

@@ -39,7 +39,7 @@ class Inlet:
     speed (places,), m/s; travel (places,), m; first (places,), particles that each has given to the water so far;
     solid (places,): what is fixed stands there, and the samples are a wall; covered (places,): ice comes in there, and
     no water; displaced, m3: water that did not come in for it so far; surface_speed, m/s: of the uppermost water that
-    comes in.
+    comes in; surface_width, m: of the part of the inlet that has water (2D: 1).
     """
 
     def __init__(self, case: Case, layers: int, fixed: list[Solid]) -> None:
@@ -48,7 +48,7 @@ class Inlet:
         across, beyond = lattice_axis(case, 1, 0)
         up = np.arange(self._floor + 0.5 * l0, case.box.max[2], l0)
         y, z = np.meshgrid(across[beyond == 0], up, indexing="ij")
-        self._y, self._z = y.ravel(), z.ravel()
+        self._y, self._z, self._shape = y.ravel(), z.ravel(), y.shape
         self._area = l0 if case.dimensions == 2 else l0 * l0
         self._lag = _LAG * np.sqrt(case.depth / -case.gravity[2])
         self._id = sum(lattice_of(case, fill).size for fill in case.water.fill)
@@ -93,6 +93,7 @@ class Inlet:
         total = math.fsum(share) * self._area
         speed = share * (self.discharge / total) if total > 0.0 else share
         self.surface_speed = float(speed[np.argmax(np.where(self.awake, self._z, -math.inf))])
+        self.surface_width = self._case.width * float(self.awake.reshape(self._shape).any(axis=1).mean())
         self.speed = np.where(self.covered, 0.0, speed)
         self._lost = (math.fsum(speed) - math.fsum(self.speed)) * self._area
 

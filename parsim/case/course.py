@@ -27,9 +27,19 @@ def largest(course):
     return abs(course) if isinstance(course, float) else max(abs(value) for _, value in course)
 
 
+def highest(course):
+    """The largest value of a `Course`, with its sign."""
+    return course if isinstance(course, float) else max(value for _, value in course)
+
+
 def least(course):
     """The least value of a `Course`."""
     return course if isinstance(course, float) else min(value for _, value in course)
+
+
+def times_of(*courses):
+    """The times, s, between which each `Course`, if it is given, is straight."""
+    return sorted({time for course in courses if not isinstance(course, float | None) for time, _ in course})
 
 
 def wrong_course(key, course):
