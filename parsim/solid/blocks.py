@@ -1,0 +1,268 @@
+"""Contacts of a heap, 64 to a block: what every quantity of them is lies together, so that vectors of numbers do the work.
+
+A block is ROWS rows of 64 numbers; `at` is where it begins in the array of all. Its rows: RA, RB, m, radii of balls a and
+b, of a wall 0; ROUND, m, of both together; LIGHT, 1/kg, 1 / effective mass; OWN, DAMPING, MU, SHEAR, ROLLING, see
+`forces.press`; BY (3), m, to the periodic image of b; TOUCHING, 1 or 0; LAPSE, STORED, LOST, SHEARED, NOW, see `tanks`;
+ROOM, J, the most that its tank may hold; FREED, J, what its friction springs hold less than before; DEEP, m; NORMAL,
+ELASTIC, N; N (3); SLIP, friction (3), N; TURN, against rolling (3), N m; STRETCH, ROLL (3), m; WORK, WASTE, J, of all its
+loads and of what they dissipate in a kick.
+"""
+
+import math
+
+from parsim.machine.jit import kernel
+from parsim.solid.balls import push_of_balls, turn_of_balls
+from parsim.solid.curves import spot_area
+from parsim.solid.laws.kernels import stiffness
+
+LANES, ROWS = 64, 40
+(
+    RA, RB, ROUND, LIGHT, OWN, DAMPING, MU, SHEAR, ROLLING, BY, _, _, TOUCHING, LAPSE, STORED, LOST, SHEARED, NOW, ROOM,
+    FREED, DEEP, NORMAL, ELASTIC, N, _, _, SLIP, _, _, TURN, _, _, STRETCH, _, _, ROLL, _, _, WORK, WASTE,
+) = range(0, ROWS * LANES, LANES)  # fmt: skip
+_V, _A, _B, _R, _D, _NEW, _FAR, _AREA, _RIGID, _HELD, _MORE = (
+    LANES * k for k in (0, 3, 6, 9, 12, 15, 18, 19, 20, 21, 22)
+)
+SCRATCH = 23 * LANES
+_Y, _Z = LANES, 2 * LANES
+# columns of the tables of a heap's balls. move: place, velocity, spin, acceleration at the kick before, radius, 1 / mass
+# and 1 / moment of inertia; load: what contacts do now, and the mean of the motions before and after a kick; kept:
+# constant load, impulse of contacts, quaternion
+X, V, W, RUSH, RADIUS, SOFT, INERT = 0, 3, 6, 9, 12, 13, 14
+LOAD, MEAN = 0, 6
+GIVEN, TOTAL, QUATERNION = 0, 6, 12
+
+
+@kernel
+def gather(move, a, b, first, s):
+    """Velocities, spins and accelerations of the balls `a` and `b` (of the pairs from `first` on) into the scratch `s`."""
+    for i in range(LANES):
+        p, q = a[first + i], b[first + i]
+        for k in range(3):
+            s[_V + k * LANES + i] = move[p, V + k] - move[q, V + k]
+            s[_A + k * LANES + i], s[_B + k * LANES + i] = move[p, W + k], move[q, W + k]
+            s[_R + k * LANES + i] = move[p, RUSH + k] - move[q, RUSH + k]
+
+
+@kernel
+def approach(move, a, b, first, pair, at, s):
+    """Depth and normal of a block of pairs of balls, into `s`."""
+    for i in range(LANES):
+        p, q = a[first + i], b[first + i]
+        for k in range(3):
+            s[_D + k * LANES + i] = move[p, X + k] - move[q, X + k]
+    for i in range(LANES):
+        k = at + i
+        x, y, z = s[_D + i] - pair[k + BY], s[_D + _Y + i] - pair[k + BY + _Y], s[_D + _Z + i] - pair[k + BY + _Z]
+        far = math.sqrt(x * x + y * y + z * z)
+        share = 1.0 / far if far > 0.0 else 0.0
+        s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i] = share * x, share * y, share * z if far > 0.0 else 1.0
+        s[_FAR + i] = pair[k + RA] + pair[k + RB] - far
+
+
+@kernel
+def approach_walls(move, a, walls, which, first, s):
+    """The same of a block of balls and walls; `which`: number of the wall, by pair, -1: none."""
+    for i in range(LANES):
+        p, w = a[first + i], which[first + i]
+        s[_FAR + i], s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i] = -1.0, 0.0, 0.0, 1.0
+        if w >= 0:
+            n = (walls[w, 0], walls[w, 1], walls[w, 2])
+            s[_FAR + i] = -height(move, p, walls, w)
+            s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i] = n
+
+
+@kernel
+def height(move, p, walls, w):
+    """Distance, m, of ball `p` from wall `w`; endlessly far where the wall is not."""
+    x, y, z, radius = move[p, X], move[p, X + 1], move[p, X + 2], move[p, RADIUS]
+    apart = x * walls[w, 0] + y * walls[w, 1] + z * walls[w, 2] - radius - walls[w, 3]
+    arm = radius + 0.5 * min(apart, 0.0)
+    x, y, z = x - arm * walls[w, 0], y - arm * walls[w, 1], z - arm * walls[w, 2]
+    there = walls[w, 4] <= x <= walls[w, 7] and walls[w, 5] <= y <= walls[w, 8] and walls[w, 6] <= z <= walls[w, 9]
+    return apart if there else math.inf
+
+
+@kernel
+def respond(pair, at, s, law, lapse, span):
+    """Forces of a block, what was approached and gathered in `s`; see `forces.press`. `law`: (number, curvature)."""
+    number, bend = law
+    for i in range(LANES):
+        k = at + i
+        deep = s[_FAR + i] if s[_FAR + i] > 0.0 else pair[k + ROUND]
+        area = spot_area((bend, pair[k + ROUND]), deep)
+        rigid, held, more = stiffness(number, pair[k + OWN], area, bend, pair[k + ROUND], deep)
+        s[_AREA + i], s[_RIGID + i], s[_HELD + i], s[_MORE + i] = area, rigid, held, more
+    for i in range(LANES):
+        k = at + i
+        far, n = s[_FAR + i], (s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i])
+        on, was = far > 0.0, pair[k + TOUCHING]
+        deep = far if on else pair[k + ROUND]
+        one, two = 0.5 * deep - pair[k + RA], pair[k + RB] - 0.5 * deep
+        before = pair[k + NORMAL] * (pair[k + N] * n[0] + pair[k + N + _Y] * n[1] + pair[k + N + _Z] * n[2])
+        before += pair[k + SLIP] * n[0] + pair[k + SLIP + _Y] * n[1] + pair[k + SLIP + _Z] * n[2]
+        parting = s[_R + i] * n[0] + s[_R + _Y + i] * n[1] + s[_R + _Z + i] * n[2]
+        x, y, z = _armed(s, i, one, two)
+        v = (
+            s[_V + i] + (y * n[2] - z * n[1]),
+            s[_V + _Y + i] + (z * n[0] - x * n[2]),
+            s[_V + _Z + i] + (x * n[1] - y * n[0]),
+        )
+        shear, held = s[_MORE + i] * pair[k + SHEAR], s[_HELD + i]
+        own = s[_AREA + i], pair[k + ROUND], s[_RIGID + i], held, pair[k + DAMPING], pair[k + MU], shear, 0.0
+        age = was * (lapse + pair[k + LAPSE])
+        stretch = was * pair[k + STRETCH], was * pair[k + STRETCH + _Y], was * pair[k + STRETCH + _Z]
+        ahead, now = (before, parting), (deep, age, span)
+        normal, elastic, slip, stretch, energy = push_of_balls(own, n, v, pair[k + LIGHT], ahead, stretch, now)
+        pair[k + NORMAL], pair[k + ELASTIC] = normal if on else 0.0, elastic if on else 0.0
+        pair[k + N], pair[k + N + _Y], pair[k + N + _Z] = n
+        pair[k + SLIP], pair[k + SLIP + _Y] = slip[0] if on else 0.0, slip[1] if on else 0.0
+        pair[k + SLIP + _Z] = slip[2] if on else 0.0
+        pair[k + STRETCH], pair[k + STRETCH + _Y], pair[k + STRETCH + _Z] = stretch
+        pair[k + DEEP] = deep if on else 0.0
+        room, energy = pair[k + NOW], energy if on else 0.0
+        pair[k + NOW] = energy + (held * elastic * deep if on else 0.0)
+        room += pair[k + NOW]
+        pair[k + ROOM] = room
+        pair[k + FREED], pair[k + SHEARED] = pair[k + SHEARED] - energy, energy
+
+
+@kernel
+def roll(pair, at, s, lapse, span):
+    """Add what rolling friction does to the forces of a block, known from `respond`."""
+    for i in range(LANES):
+        k = at + i
+        on, was, n = pair[k + DEEP] > 0.0, pair[k + TOUCHING], (pair[k + N], pair[k + N + _Y], pair[k + N + _Z])
+        acts = on and pair[k + ROLLING] > 0.0
+        rolling = pair[k + ROLLING] if acts else 1.0
+        own = s[_AREA + i], pair[k + ROUND], s[_RIGID + i], s[_HELD + i], pair[k + DAMPING], 0.0, 0.0, rolling
+        spin = s[_A + i] - s[_B + i], s[_A + _Y + i] - s[_B + _Y + i], s[_A + _Z + i] - s[_B + _Z + i]
+        rolled = was * pair[k + ROLL], was * pair[k + ROLL + _Y], was * pair[k + ROLL + _Z]
+        now = pair[k + DEEP], was * (lapse + pair[k + LAPSE]), span
+        turn, rolled, energy = turn_of_balls(own, n, spin, pair[k + LIGHT], pair[k + NORMAL], rolled, now)
+        for a in range(3):
+            pair[k + TURN + a * LANES] = turn[a] if acts else 0.0
+            pair[k + ROLL + a * LANES] = rolled[a] if acts else 0.0
+        energy = energy if acts else 0.0
+        pair[k + NOW] += energy
+        pair[k + ROOM] += energy
+        pair[k + FREED] -= energy
+        pair[k + SHEARED] += energy
+
+
+@kernel
+def _armed(s, i, one, two):
+    """Spins times arms along the normal, of a less that of b."""
+    x, y = one * s[_A + i] - two * s[_B + i], one * s[_A + _Y + i] - two * s[_B + _Y + i]
+    return x, y, one * s[_A + _Z + i] - two * s[_B + _Z + i]
+
+
+@kernel
+def load_balls(load, a, b, first, pair, at):
+    """Add the loads of a block to those of its balls, pair by pair; how many touch."""
+    touching = 0
+    for i in range(LANES):
+        k, p, q = at + i, a[first + i], b[first + i]
+        pair[k + TOUCHING], pair[k + LAPSE] = 0.0, 0.0
+        if pair[k + DEEP] > 0.0:
+            touching += 1
+            pair[k + TOUCHING] = 1.0
+            load_pair(load, p, q, pair, k, 1.0)
+    return touching
+
+
+@kernel
+def load_pair(load, p, q, pair, k, share):
+    """Add this share of the loads of the pair at `k` to those of its balls `p` and `q`."""
+    n, f = (pair[k + N], pair[k + N + _Y], pair[k + N + _Z]), (pair[k + SLIP], pair[k + SLIP + _Y], pair[k + SLIP + _Z])
+    one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
+    normal = pair[k + NORMAL]
+    moment = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+    for c in range(3):
+        force, turn = share * (normal * n[c] + f[c]), pair[k + TURN + c * LANES]
+        load[p, LOAD + c] += force
+        load[q, LOAD + c] -= force
+        load[p, LOAD + 3 + c] += share * (one * moment[c] + turn)
+        load[q, LOAD + 3 + c] -= share * (two * moment[c] + turn)
+
+
+@kernel
+def work(load, a, b, first, pair, at, s, span):
+    """WORK and WASTE of a block in a kick over `span`, s, at the MEAN motion of its balls; whether a tank has too little."""
+    for i in range(LANES):
+        p, q = a[first + i], b[first + i]
+        for c in range(3):
+            s[_V + c * LANES + i] = load[p, MEAN + c] - load[q, MEAN + c]
+            s[_A + c * LANES + i], s[_B + c * LANES + i] = load[p, MEAN + 3 + c], load[q, MEAN + 3 + c]
+    for i in range(LANES):
+        k = at + i
+        pair[k + STORED] = min(pair[k + STORED], pair[k + ROOM])
+        pair[k + WORK], pair[k + WASTE] = _work(pair, k, s, i, span)
+    over = 0
+    for i in range(LANES):
+        over += pair[at + i + WORK] > pair[at + i + STORED]
+    return over > 0
+
+
+@kernel
+def _work(pair, k, s, i, span):
+    """(work of the loads of the pair at `k`, of what they dissipate), J, for the motion in lane `i` of `s`."""
+    n = pair[k + N], pair[k + N + _Y], pair[k + N + _Z]
+    one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
+    x, y, z = _armed(s, i, one, two)
+    u, v, w = s[_V + i], s[_V + _Y + i], s[_V + _Z + i]
+    along = u * n[0] + v * n[1] + w * n[2]
+    u, v, w = u + (y * n[2] - z * n[1]), v + (z * n[0] - x * n[2]), w + (x * n[1] - y * n[0])
+    power = pair[k + NORMAL] * along + (pair[k + SLIP] * u + pair[k + SLIP + _Y] * v + pair[k + SLIP + _Z] * w)
+    x, y, z = s[_A + i] - s[_B + i], s[_A + _Y + i] - s[_B + _Y + i], s[_A + _Z + i] - s[_B + _Z + i]
+    power += pair[k + TURN] * x + pair[k + TURN + _Y] * y + pair[k + TURN + _Z] * z
+    return span * power, span * (power - pair[k + ELASTIC] * along)
+
+
+@kernel
+def work_again(load, p, q, pair, k, s, span):
+    """The same of the pair at `k` alone, of balls `p` and `q`."""
+    for c in range(3):
+        s[_V + c * LANES] = load[p, MEAN + c] - load[q, MEAN + c]
+        s[_A + c * LANES], s[_B + c * LANES] = load[p, MEAN + 3 + c], load[q, MEAN + 3 + c]
+    pair[k + WORK], pair[k + WASTE] = _work(pair, k, s, 0, span)
+
+
+@kernel
+def slacken(pair, k, share):
+    """Leave the pair at `k` this share of its loads, and its friction springs the stretch that goes with theirs."""
+    pair[k + NORMAL] *= share
+    pair[k + ELASTIC] *= share
+    for c in range(3):
+        for row in (SLIP, TURN, STRETCH, ROLL):
+            pair[k + row + c * LANES] *= share
+    left = share * share * pair[k + SHEARED]
+    pair[k + FREED] += pair[k + SHEARED] - left
+    pair[k + SHEARED] = left
+
+
+@kernel
+def account(pair, at, heat):
+    """Fill or drain the tanks of a block by its WORK; adds to `heat` (64,), J, what is dissipated. See `tanks._account`."""
+    for i in range(LANES):
+        k = at + i
+        heat[i] -= pair[k + WASTE]
+        there = max(pair[k + STORED] - pair[k + WORK], 0.0)
+        lost = min(max(pair[k + FREED] - pair[k + WASTE], -pair[k + LOST]), there)
+        on = pair[k + NOW] > 0.0
+        pair[k + LOST] = min(pair[k + LOST] + lost, pair[k + ROOM]) if on else pair[k + LOST]
+        pair[k + STORED] = there - lost if on else pair[k + STORED]
+
+
+@kernel
+def answer_to(move, p, q, pair, k):
+    """Force times acceleration by the loads of the pair at `k` on its balls `p` and `q`, W/s."""
+    n, f = (pair[k + N], pair[k + N + _Y], pair[k + N + _Z]), (pair[k + SLIP], pair[k + SLIP + _Y], pair[k + SLIP + _Z])
+    one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
+    moment = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+    total = 0.0
+    for c in range(3):
+        force, turn = pair[k + NORMAL] * n[c] + f[c], pair[k + TURN + c * LANES]
+        x, y = one * moment[c] + turn, two * moment[c] + turn
+        total += pair[k + LIGHT] * force * force + move[p, INERT] * x * x + move[q, INERT] * y * y
+    return total

@@ -1,0 +1,209 @@
+"""Heaps: islands of nothing but balls and walls. They move over a step in tables of their own, without what others need.
+
+The same laws, the same order in time as in `substeps` and `tanks`. What is near enough to touch soon is listed anew when
+something has moved by half the way that was allowed for.
+"""
+
+import math
+
+import numpy as np
+
+from parsim.geometry.rotation import turn_of, turned
+from parsim.machine.jit import kernel
+from parsim.solid import blocks, table
+from parsim.solid.blocks import (
+    GIVEN,
+    INERT,
+    LANES,
+    LOAD,
+    MEAN,
+    NOW,
+    QUATERNION,
+    RADIUS,
+    ROWS,
+    RUSH,
+    SOFT,
+    STORED,
+    TOTAL,
+    V,
+    W,
+    WORK,
+    X,
+)
+from parsim.solid.forces import free_time
+from parsim.solid.heap_tables import hand_back, heap_of, list_near, store
+from parsim.solid.search import FEATURE
+from parsim.solid.separation import BALLS
+from parsim.solid.tanks import LAPSE, ROUNDING, ROUNDS, SHEAR, share_within
+from parsim.solid.tanks import NOW as HELD
+
+_LIFE = 40  # sub-steps that a list of what is near is to last
+_ROOM = 1e-3  # of the least radius, by which it reaches at least
+_SMALL = 1e-3  # square of half an angle below which three terms give its sine and cosine to the last bit
+
+
+@kernel
+def is_heap(m, touch, island):
+    """Whether an island is nothing but balls, free or held, and walls."""
+    rows, _, which = island
+    for b in rows:
+        if (
+            m[b, table.ROLE] != table.INVOLVED
+            and m[b, table.ROLE] != table.HELD
+            or touch.first_spring[b + 1] > touch.first_spring[b]
+        ):
+            return False
+    for c in which:
+        if touch.pairs[c, FEATURE] != BALLS:
+            return False
+    return True
+
+
+@kernel
+def advance_heap(m, touch, island, dt, longest, touching):
+    """Move a heap over `dt`, s, in sub-steps of `longest`, s, at most: (touching, sub-steps, energy dissipated, J).
+
+    `touching`: how many pairs do so at the start, where their forces are known; `island`: (rows, how many are its own,
+    pairs).
+    """
+    heap, which = heap_of(m, touch, island), island[2]
+    rest, pending, steps, way, allowed = dt, 0.0, 0, 0.0, -1.0
+    while rest > 0.0:
+        count = max(math.ceil(rest / longest), 1)
+        span = rest / count
+        if touching == 0 and count > 1:
+            hand_back(m, heap)
+            span = min(max(span, free_time(m, touch, which, dt) - pending), rest)
+        fastest = _drift(heap, pending + 0.5 * span)
+        way += (pending + 0.5 * span) * fastest
+        if not 2.0 * way <= allowed:
+            allowed, way = max(2 * _LIFE * span * fastest, _ROOM * heap.move[0, RADIUS]), 0.0
+            store(m, touch, heap)
+            list_near(m, touch, heap, which, allowed)
+        touching = _press(touch, heap, pending + 0.5 * span, span)
+        _restrain(heap, span)
+        _kick(heap, span)
+        steps += 1
+        rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
+    _drift(heap, pending)
+    store(m, touch, heap)
+    hand_back(m, heap)
+    lost = 0.0
+    for i in range(LANES):
+        lost += heap.heat[i]
+    for c in which:
+        touch.tanks[c, LAPSE] = pending
+        if touch.tanks[c, HELD] > 0.0:
+            lost -= touch.tanks[c, SHEAR]
+    return touching, steps, lost
+
+
+@kernel
+def _drift(heap, dt):
+    """Move and turn all balls over `dt`, s, and begin their loads anew; the largest speed of a centre, m/s."""
+    move, load, kept, most = heap.move, heap.load, heap.kept, 0.0
+    for i in range(len(heap.rows)):
+        for k in range(3):
+            move[i, X + k] += dt * move[i, V + k]
+            move[i, RUSH + k] = move[i, SOFT] * (kept[i, GIVEN + k] + load[i, LOAD + k])
+            load[i, LOAD + k] = load[i, LOAD + 3 + k] = 0.0
+        most = max(most, move[i, V] * move[i, V] + move[i, V + 1] * move[i, V + 1] + move[i, V + 2] * move[i, V + 2])
+        _turn(kept, i, dt * move[i, W], dt * move[i, W + 1], dt * move[i, W + 2])
+    return math.sqrt(most)
+
+
+@kernel
+def _turn(kept, i, x, y, z):
+    """Turn ball `i` by a rotation vector, rad; what is small by series, which cost a fifth."""
+    s = 0.25 * (x * x + y * y + z * z)
+    q = kept[i, QUATERNION], kept[i, QUATERNION + 1], kept[i, QUATERNION + 2], kept[i, QUATERNION + 3]
+    if s < _SMALL:
+        share = 0.5 - s * (1.0 / 12.0 - s * (1.0 / 240.0 - s / 10080.0))
+        turn = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s / 720.0)), share * x, share * y, share * z
+    else:
+        turn = turn_of(x, y, z)
+    q = turned(turn, q)
+    for k in range(4):
+        kept[i, QUATERNION + k] = q[k]
+
+
+@kernel
+def _press(touch, heap, lapse, span):
+    """Loads of all pairs on their balls; how many touch. See `forces.press`."""
+    move, a, b, pair, s, touching = heap.move, heap.a, heap.b, heap.pair, heap.scratch, 0
+    for block in range(heap.count[1]):
+        first, at = block * LANES, block * LANES * ROWS
+        if block < heap.count[0]:
+            blocks.approach(move, a, b, first, pair, at, s)
+        else:
+            blocks.approach_walls(move, a, touch.walls, heap.wall, first, s)
+        blocks.gather(move, a, b, first, s)
+        blocks.respond(pair, at, s, heap.law[:2], lapse, span)
+        if heap.law[2]:
+            blocks.roll(pair, at, s, lapse, span)
+        touching += blocks.load_balls(heap.load, a, b, first, pair, at)
+    return touching
+
+
+@kernel
+def _restrain(heap, span):
+    """Let no pair take more from its tank in this kick than it holds: see `tanks.restrain`."""
+    a, b, pair, s, over = heap.a, heap.b, heap.pair, heap.scratch, False
+    for i in range(len(heap.rows)):
+        _foresee(heap, i, span)
+    for block in range(heap.count[1]):
+        first = block * LANES
+        over = blocks.work(heap.load, a, b, first, pair, first * ROWS, s, span) or over
+    if over:
+        _lessen(heap, span)
+    for block in range(heap.count[1]):
+        blocks.account(pair, block * LANES * ROWS, heap.heat)
+
+
+@kernel
+def _foresee(heap, i, span):
+    """Set the MEAN of ball `i`: see `motion.foresee`."""
+    move, load, kept, half = heap.move, heap.load, heap.kept, 0.5 * span
+    for k in range(3):
+        load[i, MEAN + k] = move[i, V + k] + half * move[i, SOFT] * (kept[i, GIVEN + k] + load[i, LOAD + k])
+        turn = kept[i, GIVEN + 3 + k] + load[i, LOAD + 3 + k]
+        load[i, MEAN + 3 + k] = move[i, W + k] + half * move[i, INERT] * turn
+
+
+@kernel
+def _lessen(heap, span):
+    """Make loads smaller that would take more from their tanks than these hold."""
+    a, b, pair, load, last = heap.a, heap.b, heap.pair, heap.load, len(heap.rows)
+    stirred, rounds, over = np.zeros(last + 1, np.int64), 0, True
+    while over:
+        over = False
+        for j in range(heap.count[1] * LANES):
+            p, q, k = a[j], b[j], j // LANES * LANES * ROWS + j % LANES
+            if pair[k + NOW] == 0.0 or (stirred[p] < rounds and stirred[q] < rounds):
+                continue
+            if rounds > 0:
+                blocks.work_again(load, p, q, pair, k, heap.scratch, span)
+            if pair[k + WORK] > pair[k + STORED]:
+                own = 0.5 * span * span * blocks.answer_to(heap.move, p, q, pair, k)
+                if pair[k + WORK] > pair[k + STORED] + ROUNDING * own:
+                    share = share_within(pair[k + WORK], own, pair[k + STORED]) if rounds < ROUNDS else 0.0
+                    blocks.load_pair(load, p, q, pair, k, share - 1.0)
+                    blocks.slacken(pair, k, share)
+                    over, stirred[p], stirred[q] = True, rounds + 1, rounds + 1
+        rounds += 1
+        stirred[last] = 0  # walls
+        for i in range(last):
+            if stirred[i] == rounds:
+                _foresee(heap, i, span)
+
+
+@kernel
+def _kick(heap, span):
+    """Change the motion of all balls by their loads over `span`, s."""
+    move, load, kept = heap.move, heap.load, heap.kept
+    for i in range(len(heap.rows)):
+        for k in range(3):
+            move[i, V + k] += span * move[i, SOFT] * (kept[i, GIVEN + k] + load[i, LOAD + k])
+            move[i, W + k] += span * move[i, INERT] * (kept[i, GIVEN + 3 + k] + load[i, LOAD + 3 + k])
+            kept[i, TOTAL + k] += span * load[i, LOAD + k]
+            kept[i, TOTAL + 3 + k] += span * load[i, LOAD + 3 + k]
