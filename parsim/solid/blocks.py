@@ -34,10 +34,10 @@ GIVEN, TOTAL, QUATERNION = 0, 6, 12
 
 
 @kernel
-def gather(move, a, b, first, s):
+def gather(move, a, b, s):
     """Velocities, spins and accelerations of the balls `a` and `b` (of the pairs from `first` on) into the scratch `s`."""
     for i in range(LANES):
-        p, q = a[first + i], b[first + i]
+        p, q = a[i], b[i]
         for k in range(3):
             s[_V + k * LANES + i] = move[p, V + k] - move[q, V + k]
             s[_A + k * LANES + i], s[_B + k * LANES + i] = move[p, W + k], move[q, W + k]
@@ -45,26 +45,25 @@ def gather(move, a, b, first, s):
 
 
 @kernel
-def approach(move, a, b, first, pair, at, s):
+def approach(move, a, b, pair, s):
     """Depth and normal of a block of pairs of balls, into `s`."""
     for i in range(LANES):
-        p, q = a[first + i], b[first + i]
+        p, q = a[i], b[i]
         for k in range(3):
             s[_D + k * LANES + i] = move[p, X + k] - move[q, X + k]
     for i in range(LANES):
-        k = at + i
-        x, y, z = s[_D + i] - pair[k + BY], s[_D + _Y + i] - pair[k + BY + _Y], s[_D + _Z + i] - pair[k + BY + _Z]
+        x, y, z = s[_D + i] - pair[i + BY], s[_D + _Y + i] - pair[i + BY + _Y], s[_D + _Z + i] - pair[i + BY + _Z]
         far = math.sqrt(x * x + y * y + z * z)
         share = 1.0 / far if far > 0.0 else 0.0
         s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i] = share * x, share * y, share * z if far > 0.0 else 1.0
-        s[_FAR + i] = pair[k + RA] + pair[k + RB] - far
+        s[_FAR + i] = pair[i + RA] + pair[i + RB] - far
 
 
 @kernel
-def approach_walls(move, a, walls, which, first, s):
+def approach_walls(move, a, walls, which, s):
     """The same of a block of balls and walls; `which`: number of the wall, by pair, -1: none."""
     for i in range(LANES):
-        p, w = a[first + i], which[first + i]
+        p, w = a[i], which[i]
         s[_FAR + i], s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i] = -1.0, 0.0, 0.0, 1.0
         if w >= 0:
             n = (walls[w, 0], walls[w, 1], walls[w, 2])
@@ -84,23 +83,22 @@ def height(move, p, walls, w):
 
 
 @kernel
-def respond(pair, at, s, law, lapse, span):
+def respond(pair, s, law, lapse, span):
     """Forces of a block, what was approached and gathered in `s`; see `forces.press`. `law`: (number, curvature)."""
     number, bend = law
     for i in range(LANES):
-        k = at + i
-        deep = s[_FAR + i] if s[_FAR + i] > 0.0 else pair[k + ROUND]
-        area = spot_area((bend, pair[k + ROUND]), deep)
-        rigid, held, more = stiffness(number, pair[k + OWN], area, bend, pair[k + ROUND], deep)
+        far, radius, own = s[_FAR + i], pair[i + ROUND], pair[i + OWN]
+        deep = far if far > 0.0 else radius
+        area = spot_area((bend, radius), deep)
+        rigid, held, more = stiffness(number, own, area, bend, radius, deep)
         s[_AREA + i], s[_RIGID + i], s[_HELD + i], s[_MORE + i] = area, rigid, held, more
     for i in range(LANES):
-        k = at + i
-        far, n = s[_FAR + i], (s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i])
-        on, was = far > 0.0, pair[k + TOUCHING]
-        deep = far if on else pair[k + ROUND]
-        one, two = 0.5 * deep - pair[k + RA], pair[k + RB] - 0.5 * deep
-        before = pair[k + NORMAL] * (pair[k + N] * n[0] + pair[k + N + _Y] * n[1] + pair[k + N + _Z] * n[2])
-        before += pair[k + SLIP] * n[0] + pair[k + SLIP + _Y] * n[1] + pair[k + SLIP + _Z] * n[2]
+        far, radius, n = s[_FAR + i], pair[i + ROUND], (s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i])
+        on, was = far > 0.0, pair[i + TOUCHING]
+        deep = far if on else radius
+        one, two = 0.5 * deep - pair[i + RA], pair[i + RB] - 0.5 * deep
+        before = pair[i + NORMAL] * (pair[i + N] * n[0] + pair[i + N + _Y] * n[1] + pair[i + N + _Z] * n[2])
+        before += pair[i + SLIP] * n[0] + pair[i + SLIP + _Y] * n[1] + pair[i + SLIP + _Z] * n[2]
         parting = s[_R + i] * n[0] + s[_R + _Y + i] * n[1] + s[_R + _Z + i] * n[2]
         x, y, z = _armed(s, i, one, two)
         v = (
@@ -108,46 +106,44 @@ def respond(pair, at, s, law, lapse, span):
             s[_V + _Y + i] + (z * n[0] - x * n[2]),
             s[_V + _Z + i] + (x * n[1] - y * n[0]),
         )
-        shear, held = s[_MORE + i] * pair[k + SHEAR], s[_HELD + i]
-        own = s[_AREA + i], pair[k + ROUND], s[_RIGID + i], held, pair[k + DAMPING], pair[k + MU], shear, 0.0
-        age = was * (lapse + pair[k + LAPSE])
-        stretch = was * pair[k + STRETCH], was * pair[k + STRETCH + _Y], was * pair[k + STRETCH + _Z]
+        shear, held = s[_MORE + i] * pair[i + SHEAR], s[_HELD + i]
+        own = s[_AREA + i], radius, s[_RIGID + i], held, pair[i + DAMPING], pair[i + MU], shear, 0.0
+        age = was * (lapse + pair[i + LAPSE])
+        stretch = was * pair[i + STRETCH], was * pair[i + STRETCH + _Y], was * pair[i + STRETCH + _Z]
         ahead, now = (before, parting), (deep, age, span)
-        normal, elastic, slip, stretch, energy = push_of_balls(own, n, v, pair[k + LIGHT], ahead, stretch, now)
-        pair[k + NORMAL], pair[k + ELASTIC] = normal if on else 0.0, elastic if on else 0.0
-        pair[k + N], pair[k + N + _Y], pair[k + N + _Z] = n
-        pair[k + SLIP], pair[k + SLIP + _Y] = slip[0] if on else 0.0, slip[1] if on else 0.0
-        pair[k + SLIP + _Z] = slip[2] if on else 0.0
-        pair[k + STRETCH], pair[k + STRETCH + _Y], pair[k + STRETCH + _Z] = stretch
-        pair[k + DEEP] = deep if on else 0.0
-        room, energy = pair[k + NOW], energy if on else 0.0
-        pair[k + NOW] = energy + (held * elastic * deep if on else 0.0)
-        room += pair[k + NOW]
-        pair[k + ROOM] = room
-        pair[k + FREED], pair[k + SHEARED] = pair[k + SHEARED] - energy, energy
+        normal, elastic, slip, stretch, energy = push_of_balls(own, n, v, pair[i + LIGHT], ahead, stretch, now)
+        pair[i + NORMAL], pair[i + ELASTIC] = normal if on else 0.0, elastic if on else 0.0
+        for c in range(3):
+            pair[i + N + c * LANES], pair[i + SLIP + c * LANES] = n[c], slip[c] if on else 0.0
+            pair[i + STRETCH + c * LANES] = stretch[c] if on else 0.0
+        pair[i + DEEP] = deep if on else 0.0
+        room, energy = pair[i + NOW], energy if on else 0.0
+        pair[i + NOW] = energy + (held * elastic * deep if on else 0.0)
+        room += pair[i + NOW]
+        pair[i + ROOM] = room
+        pair[i + FREED], pair[i + SHEARED] = pair[i + SHEARED] - energy, energy
 
 
 @kernel
-def roll(pair, at, s, lapse, span):
+def roll(pair, s, lapse, span):
     """Add what rolling friction does to the forces of a block, known from `respond`."""
     for i in range(LANES):
-        k = at + i
-        on, was, n = pair[k + DEEP] > 0.0, pair[k + TOUCHING], (pair[k + N], pair[k + N + _Y], pair[k + N + _Z])
-        acts = on and pair[k + ROLLING] > 0.0
-        rolling = pair[k + ROLLING] if acts else 1.0
-        own = s[_AREA + i], pair[k + ROUND], s[_RIGID + i], s[_HELD + i], pair[k + DAMPING], 0.0, 0.0, rolling
+        on, was, n = pair[i + DEEP] > 0.0, pair[i + TOUCHING], (pair[i + N], pair[i + N + _Y], pair[i + N + _Z])
+        acts = on and pair[i + ROLLING] > 0.0
+        rolling = pair[i + ROLLING] if acts else 1.0
+        own = s[_AREA + i], pair[i + ROUND], s[_RIGID + i], s[_HELD + i], pair[i + DAMPING], 0.0, 0.0, rolling
         spin = s[_A + i] - s[_B + i], s[_A + _Y + i] - s[_B + _Y + i], s[_A + _Z + i] - s[_B + _Z + i]
-        rolled = was * pair[k + ROLL], was * pair[k + ROLL + _Y], was * pair[k + ROLL + _Z]
-        now = pair[k + DEEP], was * (lapse + pair[k + LAPSE]), span
-        turn, rolled, energy = turn_of_balls(own, n, spin, pair[k + LIGHT], pair[k + NORMAL], rolled, now)
+        rolled = was * pair[i + ROLL], was * pair[i + ROLL + _Y], was * pair[i + ROLL + _Z]
+        now = pair[i + DEEP], was * (lapse + pair[i + LAPSE]), span
+        turn, rolled, energy = turn_of_balls(own, n, spin, pair[i + LIGHT], pair[i + NORMAL], rolled, now)
         for a in range(3):
-            pair[k + TURN + a * LANES] = turn[a] if acts else 0.0
-            pair[k + ROLL + a * LANES] = rolled[a] if acts else 0.0
+            pair[i + TURN + a * LANES] = turn[a] if acts else 0.0
+            pair[i + ROLL + a * LANES] = rolled[a] if acts else 0.0
         energy = energy if acts else 0.0
-        pair[k + NOW] += energy
-        pair[k + ROOM] += energy
-        pair[k + FREED] -= energy
-        pair[k + SHEARED] += energy
+        pair[i + NOW] += energy
+        pair[i + ROOM] += energy
+        pair[i + FREED] -= energy
+        pair[i + SHEARED] += energy
 
 
 @kernel
@@ -158,16 +154,16 @@ def _armed(s, i, one, two):
 
 
 @kernel
-def load_balls(load, a, b, first, pair, at):
+def load_balls(load, a, b, pair):
     """Add the loads of a block to those of its balls, pair by pair; how many touch."""
     touching = 0
     for i in range(LANES):
-        k, p, q = at + i, a[first + i], b[first + i]
-        pair[k + TOUCHING], pair[k + LAPSE] = 0.0, 0.0
-        if pair[k + DEEP] > 0.0:
+        p, q = a[i], b[i]
+        pair[i + TOUCHING], pair[i + LAPSE] = 0.0, 0.0
+        if pair[i + DEEP] > 0.0:
             touching += 1
-            pair[k + TOUCHING] = 1.0
-            load_pair(load, p, q, pair, k, 1.0)
+            pair[i + TOUCHING] = 1.0
+            load_pair(load, p, q, pair, i, 1.0)
     return touching
 
 
@@ -187,20 +183,19 @@ def load_pair(load, p, q, pair, k, share):
 
 
 @kernel
-def work(load, a, b, first, pair, at, s, span):
+def work(load, a, b, pair, s, span):
     """WORK and WASTE of a block in a kick over `span`, s, at the MEAN motion of its balls; whether a tank has too little."""
     for i in range(LANES):
-        p, q = a[first + i], b[first + i]
+        p, q = a[i], b[i]
         for c in range(3):
             s[_V + c * LANES + i] = load[p, MEAN + c] - load[q, MEAN + c]
             s[_A + c * LANES + i], s[_B + c * LANES + i] = load[p, MEAN + 3 + c], load[q, MEAN + 3 + c]
     for i in range(LANES):
-        k = at + i
-        pair[k + STORED] = min(pair[k + STORED], pair[k + ROOM])
-        pair[k + WORK], pair[k + WASTE] = _work(pair, k, s, i, span)
+        pair[i + STORED] = min(pair[i + STORED], pair[i + ROOM])
+        pair[i + WORK], pair[i + WASTE] = _work(pair, i, s, i, span)
     over = 0
     for i in range(LANES):
-        over += pair[at + i + WORK] > pair[at + i + STORED]
+        over += pair[i + WORK] > pair[i + STORED]
     return over > 0
 
 
@@ -242,16 +237,16 @@ def slacken(pair, k, share):
 
 
 @kernel
-def account(pair, at, heat):
+def account(pair, heat):
     """Fill or drain the tanks of a block by its WORK; adds to `heat` (64,), J, what is dissipated. See `tanks._account`."""
     for i in range(LANES):
-        k = at + i
-        heat[i] -= pair[k + WASTE]
-        there = max(pair[k + STORED] - pair[k + WORK], 0.0)
-        lost = min(max(pair[k + FREED] - pair[k + WASTE], -pair[k + LOST]), there)
-        on = pair[k + NOW] > 0.0
-        pair[k + LOST] = min(pair[k + LOST] + lost, pair[k + ROOM]) if on else pair[k + LOST]
-        pair[k + STORED] = there - lost if on else pair[k + STORED]
+        heat[i] -= pair[i + WASTE]
+        there = max(pair[i + STORED] - pair[i + WORK], 0.0)
+        lost = min(max(pair[i + FREED] - pair[i + WASTE], -pair[i + LOST]), there)
+        on = pair[i + NOW] > 0.0
+        before, stored = pair[i + LOST], pair[i + STORED]
+        after = min(before + lost, pair[i + ROOM])
+        pair[i + LOST], pair[i + STORED] = after if on else before, there - lost if on else stored
 
 
 @kernel

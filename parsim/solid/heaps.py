@@ -130,34 +130,41 @@ def _turn(kept, i, x, y, z):
 @kernel
 def _press(touch, heap, lapse, span):
     """Loads of all pairs on their balls; how many touch. See `forces.press`."""
-    move, a, b, pair, s, touching = heap.move, heap.a, heap.b, heap.pair, heap.scratch, 0
+    move, load, walls, s, touching = heap.move, heap.load, touch.walls, heap.scratch, 0
     for block in range(heap.count[1]):
-        first, at = block * LANES, block * LANES * ROWS
+        a, b, pair = _block(heap, block)
         if block < heap.count[0]:
-            blocks.approach(move, a, b, first, pair, at, s)
+            blocks.approach(move, a, b, pair, s)
         else:
-            blocks.approach_walls(move, a, touch.walls, heap.wall, first, s)
-        blocks.gather(move, a, b, first, s)
-        blocks.respond(pair, at, s, heap.law[:2], lapse, span)
+            blocks.approach_walls(move, a, walls, heap.wall[block * LANES : (block + 1) * LANES], s)
+        blocks.gather(move, a, b, s)
+        blocks.respond(pair, s, heap.law[:2], lapse, span)
         if heap.law[2]:
-            blocks.roll(pair, at, s, lapse, span)
-        touching += blocks.load_balls(heap.load, a, b, first, pair, at)
+            blocks.roll(pair, s, lapse, span)
+        touching += blocks.load_balls(load, a, b, pair)
     return touching
 
 
 @kernel
 def _restrain(heap, span):
     """Let no pair take more from its tank in this kick than it holds: see `tanks.restrain`."""
-    a, b, pair, s, over = heap.a, heap.b, heap.pair, heap.scratch, False
+    over = False
     for i in range(len(heap.rows)):
         _foresee(heap, i, span)
     for block in range(heap.count[1]):
-        first = block * LANES
-        over = blocks.work(heap.load, a, b, first, pair, first * ROWS, s, span) or over
+        a, b, pair = _block(heap, block)
+        over = blocks.work(heap.load, a, b, pair, heap.scratch, span) or over
     if over:
         _lessen(heap, span)
     for block in range(heap.count[1]):
-        blocks.account(pair, block * LANES * ROWS, heap.heat)
+        blocks.account(_block(heap, block)[2], heap.heat)
+
+
+@kernel
+def _block(heap, block):
+    """Balls a and b and the rows of a block: views."""
+    here = slice(block * LANES, (block + 1) * LANES)
+    return heap.a[here], heap.b[here], heap.pair[block * LANES * ROWS : (block + 1) * LANES * ROWS]
 
 
 @kernel
