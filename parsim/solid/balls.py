@@ -5,7 +5,7 @@ The same laws as in `forces` and `substeps`, for what there is most of.
 
 import math
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.curves import spot_area
 from parsim.solid.element import friction_force, normal_force, rolling_torque
 from parsim.solid.faces import EXPECTED
@@ -47,7 +47,7 @@ def press_balls(m, touch, which, lapse, span):
     return touching
 
 
-@kernel
+@inlined
 def _gap(m, walls, pairs, shift, c):
     """(distance of pair `c`, unit normal towards ball a); endlessly far where its wall is not."""
     a, b = pairs[c, A], pairs[c, B]
@@ -63,19 +63,19 @@ def _gap(m, walls, pairs, shift, c):
     return (apart if there else math.inf), n
 
 
-@kernel
-def radius_of_both(m, a, b):
-    """Radius, m, of ball a and ball b, or a wall, together."""
-    return m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF]) if b >= 0 else m[a, HALF]
+@inlined
+def radius_of_both(one, two):
+    """Radius, m, of balls of the radii `one` and `two`, m, together; `two` 0: of a wall."""
+    return one * two / (one + two) if two > 0.0 else one
 
 
-@kernel
+@inlined
 def _law(m, ab, deep, walls, law, number, planar):
     """(area, m2, radius, m, of what touches; force over area and depth; energy held over force times depth; damping
     ratio; friction; tangential over normal stiffness; rolling friction)."""
     a, b = ab
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
-    radius = radius_of_both(m, a, b)
+    radius = radius_of_both(m[a, HALF], m[b, HALF] if b >= 0 else 0.0)
     bend = LINE if planar else SPOT
     area = spot_area((bend, radius), deep)
     rigid, held, more = stiffness(number, law[0, one, two], area, bend, radius, deep)
@@ -83,13 +83,13 @@ def _law(m, ab, deep, walls, law, number, planar):
     return area, radius, rigid, held, law[1, one, two], law[2, one, two], shear, law[4, one, two]
 
 
-@kernel
+@inlined
 def lightness(m, a, b):
     """1 / effective mass of two balls along their normal, 1/kg."""
     return m[a, LIGHT] + (m[b, LIGHT] if b >= 0 else 0.0)
 
 
-@kernel
+@inlined
 def _slip(m, a, b, n, arm):
     """Velocity (3,), m/s, and spin (3,) of ball a against b, or a wall, where they touch; arms along the normal, m."""
     v, w = three(m, a, VELOCITY), three(m, a, SPIN)
@@ -103,7 +103,7 @@ def _slip(m, a, b, n, arm):
     return (v[0] - u[0], v[1] - u[1], v[2] - u[2]), (w[0] - s[0], w[1] - s[1], w[2] - s[2])
 
 
-@kernel
+@inlined
 def _arms(m, a, b, deep):
     """How far along the normal the place of contact lies from the centres of a and b, m."""
     return 0.5 * deep - m[a, HALF], (m[b, HALF] - 0.5 * deep if b >= 0 else 0.0)
@@ -133,7 +133,7 @@ def _push(m, slot, tank, ab, n, law, now):
     _load(m, tank, ab, n, arm, ((normal, slip), turn, elastic))
 
 
-@kernel
+@inlined
 def dashpot_of_balls(law, light, span):
     """Dashpot over area, N s/m3, of two balls for the `law` that they have; less in long kicks: see `forces._push`."""
     area, _, rigid, held, damping, _, _, _ = law
@@ -141,7 +141,7 @@ def dashpot_of_balls(law, light, span):
     return dashpot / (1.0 + 0.5 * span * dashpot * area * light)
 
 
-@kernel
+@inlined
 def push_of_balls(law, n, v, light, ahead, stretch, now):
     """(normal force, its elastic part, N, friction (3,), N, new stretch (3,), m, energy in it, J) on ball a.
 
@@ -159,7 +159,7 @@ def push_of_balls(law, n, v, light, ahead, stretch, now):
     return normal, elastic, slip, stretch, energy
 
 
-@kernel
+@inlined
 def turn_of_balls(law, n, spin, light, normal, roll, now):
     """(torque against rolling (3,), N m, its new spring (3,), m, energy in it, J) on ball a; see `push_of_balls`."""
     area, radius, rigid, _, _, _, _, rolling = law
@@ -205,12 +205,14 @@ def rate_balls(m, touch, which, steps):
         apart, n = _gap(m, touch.walls, pairs, touch.shift, c)
         if apart == math.inf:
             continue
-        square = _square(m, touch, a, b, max(EXPECTED * radius_of_both(m, a, b), -apart))
+        square = _square(
+            m, touch, a, b, max(EXPECTED * radius_of_both(m[a, HALF], m[b, HALF] if b >= 0 else 0.0), -apart)
+        )
         many = steps[1] if apart < 0.0 and _calm(m, touch, a, b, -apart, n) else steps[0]
         add_rate(m, a, b, n, square * (many * many))
 
 
-@kernel
+@inlined
 def _square(m, touch, a, b, deep):
     """Square of the angular frequency, 1/s2, of two balls on each other at a depth."""
     law = _law(m, (a, b), deep, touch.walls, touch.pair_law, touch.law, touch.forms.planar)
@@ -218,7 +220,7 @@ def _square(m, touch, a, b, deep):
     return rigid * (1.0 / held - 1.0) * area * lightness(m, a, b)
 
 
-@kernel
+@inlined
 def _calm(m, touch, a, b, deep, n):
     """Whether two balls lie at rest on each other; see `substeps._calm`."""
     square, light = _square(m, touch, a, b, deep), m[a, LIGHT]

@@ -1,16 +1,18 @@
-"""Contacts of a heap, 64 to a block: what every quantity of them is lies together, so that vectors of numbers do the work.
+"""Contacts of a heap in blocks of 64: one quantity of all of them lies together, so that loops become vector code.
 
-A block is ROWS rows of 64 numbers; `at` is where it begins in the array of all. Its rows: RA, RB, m, radii of balls a and
-b, of a wall 0; ROUND, m, of both together; LIGHT, 1/kg, 1 / effective mass; OWN, DAMPING, MU, SHEAR, ROLLING, see
-`forces.press`; BY (3), m, to the periodic image of b; TOUCHING, 1 or 0; LAPSE, STORED, LOST, SHEARED, NOW, see `tanks`;
-ROOM, J, the most that its tank may hold; FREED, J, what its friction springs hold less than before; DEEP, m; NORMAL,
-ELASTIC, N; N (3); SLIP, friction (3), N; TURN, against rolling (3), N m; STRETCH, ROLL (3), m; WORK, WASTE, J, of all its
-loads and of what they dissipate in a kick.
+A block is ROWS rows of 64 numbers: RA, RB, m, radii of balls a and b, of a wall 0; ROUND, m, of both together; LIGHT,
+1/kg, 1 / effective mass; OWN, DAMPING, MU, SHEAR, ROLLING, see `forces.press`; BY (3), m, to the periodic image of b;
+TOUCHING, 1 or 0; LAPSE, STORED, LOST, SHEARED, NOW, see `tanks`; ROOM, J, the most that its tank may hold; FREED, J,
+what its friction springs hold less than before; DEEP, m; NORMAL, ELASTIC, N; N (3); SLIP, friction (3), N; TURN,
+against rolling (3), N m; STRETCH, ROLL (3), m; WORK, WASTE, J, of all its loads and of what they dissipate in a kick.
+
+Loops are over all 64, with what does not touch masked, and take roots eight at a time. What they call must be `inlined`;
+a block is handed on as a view from 0 on, for where an index may be negative no loop becomes vector code.
 """
 
 import math
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.balls import push_of_balls, turn_of_balls
 from parsim.solid.curves import spot_area
 from parsim.solid.laws.kernels import stiffness
@@ -25,17 +27,17 @@ _V, _A, _B, _R, _D, _NEW, _FAR, _AREA, _RIGID, _HELD, _MORE = (
 )
 SCRATCH = 23 * LANES
 _Y, _Z = LANES, 2 * LANES
-# columns of the tables of a heap's balls. move: place, velocity, spin, acceleration at the kick before, radius, 1 / mass
-# and 1 / moment of inertia; load: what contacts do now, and the mean of the motions before and after a kick; kept:
-# constant load, impulse of contacts, quaternion
-X, V, W, RUSH, RADIUS, SOFT, INERT = 0, 3, 6, 9, 12, 13, 14
+# columns of the tables of a heap's balls. move: place, velocity, spin, acceleration at the kick before, radius, 1 /
+# mass, 1 / moment of inertia, material; load: what contacts do now, and the mean of the motions before and after a kick;
+# kept: constant load, impulse of contacts, quaternion
+X, V, W, RUSH, RADIUS, SOFT, INERT, MATERIAL = 0, 3, 6, 9, 12, 13, 14, 15
 LOAD, MEAN = 0, 6
 GIVEN, TOTAL, QUATERNION = 0, 6, 12
 
 
 @kernel
 def gather(move, a, b, s):
-    """Velocities, spins and accelerations of the balls `a` and `b` (of the pairs from `first` on) into the scratch `s`."""
+    """Velocities, spins and accelerations of the balls `a` and `b` of a block into the scratch `s`."""
     for i in range(LANES):
         p, q = a[i], b[i]
         for k in range(3):
@@ -71,7 +73,7 @@ def approach_walls(move, a, walls, which, s):
             s[_NEW + i], s[_NEW + _Y + i], s[_NEW + _Z + i] = n
 
 
-@kernel
+@inlined
 def height(move, p, walls, w):
     """Distance, m, of ball `p` from wall `w`; endlessly far where the wall is not."""
     x, y, z, radius = move[p, X], move[p, X + 1], move[p, X + 2], move[p, RADIUS]
@@ -146,7 +148,7 @@ def roll(pair, s, lapse, span):
         pair[i + SHEARED] += energy
 
 
-@kernel
+@inlined
 def _armed(s, i, one, two):
     """Spins times arms along the normal, of a less that of b."""
     x, y = one * s[_A + i] - two * s[_B + i], one * s[_A + _Y + i] - two * s[_B + _Y + i]
@@ -184,43 +186,33 @@ def load_pair(load, p, q, pair, k, share):
 
 @kernel
 def work(load, a, b, pair, s, span):
-    """WORK and WASTE of a block in a kick over `span`, s, at the MEAN motion of its balls; whether a tank has too little."""
+    """WORK and WASTE of a block in a kick over `span`, s, at the MEAN motion of its balls."""
     for i in range(LANES):
         p, q = a[i], b[i]
         for c in range(3):
             s[_V + c * LANES + i] = load[p, MEAN + c] - load[q, MEAN + c]
             s[_A + c * LANES + i], s[_B + c * LANES + i] = load[p, MEAN + 3 + c], load[q, MEAN + 3 + c]
     for i in range(LANES):
+        n = pair[i + N], pair[i + N + _Y], pair[i + N + _Z]
+        one, two = 0.5 * pair[i + DEEP] - pair[i + RA], pair[i + RB] - 0.5 * pair[i + DEEP]
+        x, y, z = _armed(s, i, one, two)
+        u, v, w = s[_V + i], s[_V + _Y + i], s[_V + _Z + i]
+        along = u * n[0] + v * n[1] + w * n[2]
+        u, v, w = u + (y * n[2] - z * n[1]), v + (z * n[0] - x * n[2]), w + (x * n[1] - y * n[0])
+        power = pair[i + NORMAL] * along + (pair[i + SLIP] * u + pair[i + SLIP + _Y] * v + pair[i + SLIP + _Z] * w)
+        x, y, z = s[_A + i] - s[_B + i], s[_A + _Y + i] - s[_B + _Y + i], s[_A + _Z + i] - s[_B + _Z + i]
+        power += pair[i + TURN] * x + pair[i + TURN + _Y] * y + pair[i + TURN + _Z] * z
+        pair[i + WORK], pair[i + WASTE] = span * power, span * (power - pair[i + ELASTIC] * along)
         pair[i + STORED] = min(pair[i + STORED], pair[i + ROOM])
-        pair[i + WORK], pair[i + WASTE] = _work(pair, i, s, i, span)
+
+
+@kernel
+def exceeds(pair):
+    """Whether a pair of a block would take more from its tank than is in it."""
     over = 0
     for i in range(LANES):
         over += pair[i + WORK] > pair[i + STORED]
     return over > 0
-
-
-@kernel
-def _work(pair, k, s, i, span):
-    """(work of the loads of the pair at `k`, of what they dissipate), J, for the motion in lane `i` of `s`."""
-    n = pair[k + N], pair[k + N + _Y], pair[k + N + _Z]
-    one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
-    x, y, z = _armed(s, i, one, two)
-    u, v, w = s[_V + i], s[_V + _Y + i], s[_V + _Z + i]
-    along = u * n[0] + v * n[1] + w * n[2]
-    u, v, w = u + (y * n[2] - z * n[1]), v + (z * n[0] - x * n[2]), w + (x * n[1] - y * n[0])
-    power = pair[k + NORMAL] * along + (pair[k + SLIP] * u + pair[k + SLIP + _Y] * v + pair[k + SLIP + _Z] * w)
-    x, y, z = s[_A + i] - s[_B + i], s[_A + _Y + i] - s[_B + _Y + i], s[_A + _Z + i] - s[_B + _Z + i]
-    power += pair[k + TURN] * x + pair[k + TURN + _Y] * y + pair[k + TURN + _Z] * z
-    return span * power, span * (power - pair[k + ELASTIC] * along)
-
-
-@kernel
-def work_again(load, p, q, pair, k, s, span):
-    """The same of the pair at `k` alone, of balls `p` and `q`."""
-    for c in range(3):
-        s[_V + c * LANES] = load[p, MEAN + c] - load[q, MEAN + c]
-        s[_A + c * LANES], s[_B + c * LANES] = load[p, MEAN + 3 + c], load[q, MEAN + 3 + c]
-    pair[k + WORK], pair[k + WASTE] = _work(pair, k, s, 0, span)
 
 
 @kernel
@@ -238,7 +230,7 @@ def slacken(pair, k, share):
 
 @kernel
 def account(pair, heat):
-    """Fill or drain the tanks of a block by its WORK; adds to `heat` (64,), J, what is dissipated. See `tanks._account`."""
+    """Fill or drain the tanks of a block by its WORK; to `heat` (64,), J, adds what is lost. See `tanks._account`."""
     for i in range(LANES):
         heat[i] -= pair[i + WASTE]
         there = max(pair[i + STORED] - pair[i + WORK], 0.0)

@@ -5,17 +5,17 @@ Friction is a spring with memory (Cundall & Strack 1979), capped at mu times the
 
 import math
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined
 
 
-@kernel
+@inlined
 def normal_force(stiffness, dashpot, area, depth, speed):
     """Normal force of one element, N, and its elastic part. `speed`: of parting, m/s; never pulls."""
     elastic = stiffness * area * depth
     return max(elastic - dashpot * area * speed, 0.0), elastic
 
 
-@kernel
+@inlined
 def friction_force(stretch, n, v, lapse, limit, stiffness, dashpot):
     """(friction force, new stretch), two tuples of 3, and the elastic energy stored.
 
@@ -39,7 +39,7 @@ def friction_force(stretch, n, v, lapse, limit, stiffness, dashpot):
     return (fx, fy, fz), (sx, sy, sz), 0.5 * stiffness * length * length
 
 
-@kernel
+@inlined
 def rolling_torque(roll, n, spin, lapse, limit, radius, stiffness, dashpot):
     """(torque against rolling, N m, new spring, two tuples of 3, and the elastic energy stored).
 
@@ -56,7 +56,7 @@ def rolling_torque(roll, n, spin, lapse, limit, radius, stiffness, dashpot):
     return torque, roll, energy
 
 
-@kernel
+@inlined
 def _into_plane(s, n):
     """The vector `s` turned into the plane across the unit vector `n`, of unchanged length."""
     along = s[0] * n[0] + s[1] * n[1] + s[2] * n[2]

@@ -6,20 +6,21 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.geometry.rotation import unit
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid import blocks, search, table, tanks
-from parsim.solid.balls import lightness, radius_of_both
+from parsim.solid.balls import radius_of_both
 from parsim.solid.blocks import (
     GIVEN,
+    INERT,
     LANES,
     LOAD,
+    MATERIAL,
     QUATERNION,
     RADIUS,
     ROWS,
     SCRATCH,
     SOFT,
     TOTAL,
-    INERT,
     V,
     W,
     X,
@@ -42,10 +43,10 @@ _KEPT = (
 class Heap(NamedTuple):
     """Tables of n balls, and of one row more that walls stand for, which stays at rest.
 
-    rows (n,): of the table of bodies; row (bodies,): the other way; move, load (n + 1, 16): see `blocks`; kept (n + 1, 16):
-    constant load, impulse of contacts, quaternion. Of the pairs that are near, whole blocks, those with walls last: a, b,
-    balls; wall, -1: none; number, of the pair, -1: none; pair: see `blocks`. scratch; heat (64,), J; count (2,): blocks, of
-    them without walls. law: (its number, curvature, rolling or not)."""
+    rows (n,): of the table of bodies; row (bodies,): the other way; move, load, kept (n + 1, 16): see `blocks`. Of the
+    pairs that are near, whole blocks, those with walls last: a, b, balls; wall, -1: none; number, of the pair, -1:
+    none; pair: their blocks. scratch: of one block; heat (64,), J; count (2,): blocks without walls, all. law: (its number,
+    curvature, rolling or not)."""
 
     rows: np.ndarray
     row: np.ndarray
@@ -73,17 +74,15 @@ def heap_of(m, touch, island):
     for i, b in enumerate(rows):
         row[b] = i
         for k in range(3):
-            move[i, X + k], move[i, V + k], move[i, W + k] = (
-                m[b, table.POSITION + k],
-                m[b, table.VELOCITY + k],
-                m[b, table.SPIN + k],
-            )
+            move[i, X + k], move[i, V + k] = m[b, table.POSITION + k], m[b, table.VELOCITY + k]
+            move[i, W + k] = m[b, table.SPIN + k]
         for k in range(6):
             kept[i, GIVEN + k], kept[i, TOTAL + k] = m[b, table.GIVEN + k], m[b, table.TOTAL + k]
             load[i, LOAD + k] = m[b, table.LOAD + k]
         for k in range(4):
             kept[i, QUATERNION + k] = m[b, table.QUATERNION + k]
         move[i, RADIUS], move[i, SOFT], move[i, INERT] = m[b, table.HALF], m[b, table.LIGHT], m[b, table.INVERSE + 1]
+        move[i, MATERIAL] = m[b, table.MATERIAL]
     rolls = False
     for c in which:
         rolls = rolls or coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])[4] > 0.0
@@ -106,89 +105,79 @@ def heap_of(m, touch, island):
 
 
 @kernel
-def list_near(m, touch, heap, which, allowed):
+def list_near(touch, heap, which, allowed):
     """List the pairs `which` that are nearer than `allowed`, m, balls before walls, with what is known of them."""
-    count = 0
+    pairs, last, count = touch.pairs, len(heap.rows), 0
     for walls in (False, True):
         for c in which:
-            a, b = heap.row[touch.pairs[c, A]], touch.pairs[c, B]
-            if (b < 0) != walls:
-                continue
-            high = height(heap.move, a, touch.walls, -1 - b) if walls else _gap(heap, touch.shift, c, a, heap.row[b])
-            if high < allowed:
-                if count % LANES == 0:
-                    heap.pair[count * ROWS : (count + LANES) * ROWS] = 0.0
-                _note(m, touch, heap, c, count)
-                count += 1
+            a, b = heap.row[pairs[c, A]], pairs[c, B]
+            if (b < 0) == walls:
+                other = last if walls else heap.row[b]
+                high = height(heap.move, a, touch.walls, -1 - b) if walls else _gap(heap.move, touch.shift, c, a, other)
+                if high < allowed:
+                    heap.a[count], heap.b[count], heap.number[count], heap.wall[count] = a, other, c, -1 - b
+                    count += 1
         while count % LANES:
-            at = count // LANES * LANES * ROWS + count % LANES
-            heap.a[count] = heap.b[count] = len(heap.rows)
-            heap.wall[count] = heap.number[count] = -1
-            heap.pair[at + blocks.ROUND] = heap.pair[at + blocks.LIGHT] = heap.pair[at + blocks.OWN] = 1.0
+            heap.a[count], heap.b[count], heap.number[count], heap.wall[count] = last, last, -1, -1
             count += 1
         heap.count[int(walls)] = count // LANES
+    heap.pair[: count * ROWS] = 0.0
+    _take_over(touch, heap, count)
 
 
-@kernel
-def _gap(heap, shift, c, a, b):
+@inlined
+def _gap(move, shift, c, a, b):
     """Distance, m, of the balls a and b of pair `c`."""
-    x = heap.move[a, X] - heap.move[b, X] - shift[c, 0]
-    y = heap.move[a, X + 1] - heap.move[b, X + 1] - shift[c, 1]
-    z = heap.move[a, X + 2] - heap.move[b, X + 2] - shift[c, 2]
-    return math.sqrt(x * x + y * y + z * z) - heap.move[a, RADIUS] - heap.move[b, RADIUS]
+    x = move[a, X] - move[b, X] - shift[c, 0]
+    y = move[a, X + 1] - move[b, X + 1] - shift[c, 1]
+    z = move[a, X + 2] - move[b, X + 2] - shift[c, 2]
+    return math.sqrt(x * x + y * y + z * z) - move[a, RADIUS] - move[b, RADIUS]
 
 
 @kernel
-def _note(m, touch, heap, c, j):
-    """Take pair `c` over as the pair `j` of what is near."""
-    (a, b), pair, at = (touch.pairs[c, A], touch.pairs[c, B]), heap.pair, j // LANES * LANES * ROWS + j % LANES
-    slot, tank = touch.pairs[c, search.LAST], touch.tanks
-    heap.number[j], heap.wall[j] = c, -1 - b
-    heap.a[j], heap.b[j] = heap.row[a], (heap.row[b] if b >= 0 else len(heap.rows))
-    pair[at + blocks.RA], pair[at + blocks.RB] = m[a, table.HALF], (m[b, table.HALF] if b >= 0 else 0.0)
-    pair[at + blocks.ROUND], pair[at + blocks.LIGHT] = radius_of_both(m, a, b), lightness(m, a, b)
-    own = coefficients(m, touch, a, b)
-    (
-        pair[at + blocks.OWN],
-        pair[at + blocks.DAMPING],
-        pair[at + blocks.MU],
-        pair[at + blocks.SHEAR],
-        pair[at + blocks.ROLLING],
-    ) = own
-    pair[at + blocks.TOUCHING] = float(touch.marks[slot, search.TOUCHING])
-    for one, two in _KEPT:
-        pair[at + one] = tank[c, two]
-    for k in range(3):
-        pair[at + blocks.BY + k * LANES], pair[at + blocks.SLIP + k * LANES] = (
-            touch.shift[c, k],
-            tank[c, tanks.LOADS + k],
-        )
-        pair[at + blocks.STRETCH + k * LANES] = touch.slots[slot, search.STRETCH + k]
-        pair[at + blocks.ROLL + k * LANES] = touch.slots[slot, search.ROLL + k]
+def _take_over(touch, heap, count):
+    """Take over what is known of the first `count` pairs that are near; what only fills a block is harmless."""
+    move, pair, tank, law, slots = heap.move, heap.pair, touch.tanks, touch.pair_law, touch.slots
+    for j in range(count):
+        a, b, c, at = heap.a[j], heap.b[j], heap.number[j], j // LANES * LANES * ROWS + j % LANES
+        if c < 0:
+            pair[at + blocks.ROUND] = pair[at + blocks.LIGHT] = pair[at + blocks.OWN] = 1.0
+            continue
+        one, two, w = move[a, RADIUS], move[b, RADIUS], heap.wall[j]
+        pair[at + blocks.RA], pair[at + blocks.RB], pair[at + blocks.ROUND] = one, two, radius_of_both(one, two)
+        pair[at + blocks.LIGHT] = move[a, SOFT] + move[b, SOFT]
+        p, q = int(move[a, MATERIAL]), int(touch.walls[w, search.WALL_MATERIAL] if w >= 0 else move[b, MATERIAL])
+        for k in range(5):
+            pair[at + blocks.OWN + k * LANES] = law[k, p, q]
+        slot = touch.pairs[c, search.LAST]
+        pair[at + blocks.TOUCHING] = touch.marks[slot, search.TOUCHING]
+        for k in range(len(_KEPT)):
+            pair[at + _KEPT[k][0]] = tank[c, _KEPT[k][1]]
+        for k in range(3):
+            row = at + k * LANES
+            pair[row + blocks.BY], pair[row + blocks.SLIP] = touch.shift[c, k], tank[c, tanks.LOADS + k]
+            pair[row + blocks.STRETCH] = slots[slot, search.STRETCH + k]
+            pair[row + blocks.ROLL] = slots[slot, search.ROLL + k]
 
 
 @kernel
-def store(m, touch, heap):
+def store(touch, heap):
     """Hand back what is known of the pairs that are near."""
-    pair, tank = heap.pair, touch.tanks
+    pair, tank, slots = heap.pair, touch.tanks, touch.slots
     for j in range(heap.count[1] * LANES):
         c, at = heap.number[j], j // LANES * LANES * ROWS + j % LANES
         if c < 0:
             continue
         slot = touch.pairs[c, search.LAST]
-        touch.marks[slot, search.TOUCHING], touch.slots[slot, search.DEPTH] = (
-            int(pair[at + blocks.TOUCHING]),
-            pair[at + blocks.DEEP],
-        )
-        for one, two in _KEPT:
-            tank[c, two] = pair[at + one]
+        touch.marks[slot, search.TOUCHING] = int(pair[at + blocks.TOUCHING])
+        slots[slot, search.DEPTH] = pair[at + blocks.DEEP]
+        for k in range(len(_KEPT)):
+            tank[c, _KEPT[k][1]] = pair[at + _KEPT[k][0]]
         for k in range(3):
-            row = k * LANES
-            tank[c, tanks.LOADS + k] = (
-                pair[at + blocks.NORMAL] * pair[at + blocks.N + row] + pair[at + blocks.SLIP + row]
-            )
-            touch.slots[slot, search.STRETCH + k] = pair[at + blocks.STRETCH + row]
-            touch.slots[slot, search.ROLL + k] = pair[at + blocks.ROLL + row]
+            row = at + k * LANES
+            tank[c, tanks.LOADS + k] = pair[at + blocks.NORMAL] * pair[row + blocks.N] + pair[row + blocks.SLIP]
+            slots[slot, search.STRETCH + k] = pair[row + blocks.STRETCH]
+            slots[slot, search.ROLL + k] = pair[row + blocks.ROLL]
 
 
 @kernel
@@ -197,11 +186,8 @@ def hand_back(m, heap):
     move, kept = heap.move, heap.kept
     for i, b in enumerate(heap.rows):
         for k in range(3):
-            m[b, table.POSITION + k], m[b, table.VELOCITY + k], m[b, table.SPIN + k] = (
-                move[i, X + k],
-                move[i, V + k],
-                move[i, W + k],
-            )
+            m[b, table.POSITION + k], m[b, table.VELOCITY + k] = move[i, X + k], move[i, V + k]
+            m[b, table.SPIN + k] = move[i, W + k]
         for k in range(6):
             m[b, table.TOTAL + k] = kept[i, TOTAL + k]
         q = unit((kept[i, QUATERNION], kept[i, QUATERNION + 1], kept[i, QUATERNION + 2], kept[i, QUATERNION + 3]))

@@ -1,7 +1,7 @@
-"""Heaps: islands of nothing but balls and walls. They move over a step in tables of their own, without what others need.
+"""Heaps: islands of nothing but balls and walls, moved over a step in tables of their own, without what others need.
 
-The same laws, the same order in time as in `substeps` and `tanks`. What is near enough to touch soon is listed anew when
-something has moved by half the way that was allowed for.
+The same laws, the same order in time as in `substeps` and `tanks`. What is near enough to touch soon is listed anew
+when something may have moved by half the way that was allowed for.
 """
 
 import math
@@ -25,9 +25,9 @@ from parsim.solid.blocks import (
     SOFT,
     STORED,
     TOTAL,
+    WORK,
     V,
     W,
-    WORK,
     X,
 )
 from parsim.solid.forces import free_time
@@ -46,17 +46,12 @@ _SMALL = 1e-3  # square of half an angle below which three terms give its sine a
 def is_heap(m, touch, island):
     """Whether an island is nothing but balls, free or held, and walls."""
     rows, _, which = island
+    alike = True
     for b in rows:
-        if (
-            m[b, table.ROLE] != table.INVOLVED
-            and m[b, table.ROLE] != table.HELD
-            or touch.first_spring[b + 1] > touch.first_spring[b]
-        ):
-            return False
+        alike = alike and m[b, table.ROLE] != table.DRIVEN and touch.first_spring[b + 1] == touch.first_spring[b]
     for c in which:
-        if touch.pairs[c, FEATURE] != BALLS:
-            return False
-    return True
+        alike = alike and touch.pairs[c, FEATURE] == BALLS
+    return alike
 
 
 @kernel
@@ -78,15 +73,15 @@ def advance_heap(m, touch, island, dt, longest, touching):
         way += (pending + 0.5 * span) * fastest
         if not 2.0 * way <= allowed:
             allowed, way = max(2 * _LIFE * span * fastest, _ROOM * heap.move[0, RADIUS]), 0.0
-            store(m, touch, heap)
-            list_near(m, touch, heap, which, allowed)
+            store(touch, heap)
+            list_near(touch, heap, which, allowed)
         touching = _press(touch, heap, pending + 0.5 * span, span)
         _restrain(heap, span)
         _kick(heap, span)
         steps += 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
     _drift(heap, pending)
-    store(m, touch, heap)
+    store(touch, heap)
     hand_back(m, heap)
     lost = 0.0
     for i in range(LANES):
@@ -153,7 +148,8 @@ def _restrain(heap, span):
         _foresee(heap, i, span)
     for block in range(heap.count[1]):
         a, b, pair = _block(heap, block)
-        over = blocks.work(heap.load, a, b, pair, heap.scratch, span) or over
+        blocks.work(heap.load, a, b, pair, heap.scratch, span)
+        over = blocks.exceeds(pair) or over
     if over:
         _lessen(heap, span)
     for block in range(heap.count[1]):
@@ -180,28 +176,42 @@ def _foresee(heap, i, span):
 @kernel
 def _lessen(heap, span):
     """Make loads smaller that would take more from their tanks than these hold."""
-    a, b, pair, load, last = heap.a, heap.b, heap.pair, heap.load, len(heap.rows)
+    load, last = heap.load, len(heap.rows)
     stirred, rounds, over = np.zeros(last + 1, np.int64), 0, True
     while over:
         over = False
-        for j in range(heap.count[1] * LANES):
-            p, q, k = a[j], b[j], j // LANES * LANES * ROWS + j % LANES
-            if pair[k + NOW] == 0.0 or (stirred[p] < rounds and stirred[q] < rounds):
-                continue
+        for block in range(heap.count[1]):
+            a, b, pair = _block(heap, block)
             if rounds > 0:
-                blocks.work_again(load, p, q, pair, k, heap.scratch, span)
-            if pair[k + WORK] > pair[k + STORED]:
-                own = 0.5 * span * span * blocks.answer_to(heap.move, p, q, pair, k)
-                if pair[k + WORK] > pair[k + STORED] + ROUNDING * own:
-                    share = share_within(pair[k + WORK], own, pair[k + STORED]) if rounds < ROUNDS else 0.0
-                    blocks.load_pair(load, p, q, pair, k, share - 1.0)
-                    blocks.slacken(pair, k, share)
+                if not _any(stirred, a, b, rounds):
+                    continue
+                blocks.work(load, a, b, pair, heap.scratch, span)
+            if not blocks.exceeds(pair):
+                continue
+            for i in range(LANES):
+                p, q = a[i], b[i]
+                if pair[i + NOW] == 0.0 or pair[i + WORK] <= pair[i + STORED]:
+                    continue
+                own = 0.5 * span * span * blocks.answer_to(heap.move, p, q, pair, i)
+                if pair[i + WORK] > pair[i + STORED] + ROUNDING * own:
+                    share = share_within(pair[i + WORK], own, pair[i + STORED]) if rounds < ROUNDS else 0.0
+                    blocks.load_pair(load, p, q, pair, i, share - 1.0)
+                    blocks.slacken(pair, i, share)
                     over, stirred[p], stirred[q] = True, rounds + 1, rounds + 1
         rounds += 1
         stirred[last] = 0  # walls
         for i in range(last):
             if stirred[i] == rounds:
                 _foresee(heap, i, span)
+
+
+@kernel
+def _any(stirred, a, b, rounds):
+    """Whether the loads of any ball of a block have changed in the round before."""
+    found = False
+    for i in range(LANES):
+        found = found or stirred[a[i]] >= rounds or stirred[b[i]] >= rounds
+    return found
 
 
 @kernel

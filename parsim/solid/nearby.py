@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.grid import grid_of, near_of
 from parsim.solid.search import FEATURE, KEY, A, B, above
 from parsim.solid.separation import BALLS, ROUND_A, best_feature, gap_of_balls, is_ball
@@ -72,7 +72,7 @@ def _balls(m):
     return out
 
 
-@kernel
+@inlined
 def _height_of_ball(m, walls, a, w):
     x, y, z = three(m, a, POSITION)
     return walls[w, 0] * x + walls[w, 1] * y + walls[w, 2] * z - m[a, HALF] - walls[w, 3]
@@ -103,7 +103,7 @@ def _beside(m, place, near):
     return out[:number]
 
 
-@kernel
+@inlined
 def _within(m, a, b, near):
     """Whether the upright boxes around two bodies are within reach of each other."""
     by = _image(m, a, b, near)
@@ -114,13 +114,13 @@ def _within(m, a, b, near):
     return True
 
 
-@kernel
+@inlined
 def _image(m, a, b, near):
     """How far the image of body b beside body a is moved, m."""
     return _moved(m, a, b, near, 0), _moved(m, a, b, near, 1), _moved(m, a, b, near, 2)
 
 
-@kernel
+@inlined
 def _moved(m, a, b, near, k):
     """The same along axis k; what is wider than half the period has no image."""
     if not near.extent[b, k] < 0.5 * near.period[k] < math.inf:
