@@ -6,8 +6,8 @@ TOUCHING, 1 or 0; LAPSE, STORED, LOST, SHEARED, NOW, see `tanks`; ROOM, J, the m
 what its friction springs hold less than before; DEEP, m; NORMAL, ELASTIC, N; N (3); SLIP, friction (3), N; TURN,
 against rolling (3), N m; STRETCH, ROLL (3), m; WORK, WASTE, J, of all its loads and of what they dissipate in a kick.
 
-Loops are over all 64, with what does not touch masked, and take roots eight at a time. What they call must be `inlined`;
-a block is handed on as a view from 0 on, for where an index may be negative no loop becomes vector code.
+Loops are over all 64, with what does not touch masked, and take roots eight at a time. What they call must be
+`inlined`; a block is handed on as a view from 0 on, for where an index may be negative no loop becomes vector code.
 """
 
 import math
@@ -27,8 +27,8 @@ _V, _A, _B, _R, _D, _NEW, _FAR, _AREA, _RIGID, _HELD, _MORE = (
 )
 SCRATCH = 23 * LANES
 _Y, _Z = LANES, 2 * LANES
-# columns of the tables of a heap's balls. move: place, velocity, spin, acceleration at the kick before, radius, 1 /
-# mass, 1 / moment of inertia, material; load: what contacts do now, and the mean of the motions before and after a kick;
+# columns of the tables of a heap's balls. move: place, velocity, spin, acceleration at the kick before, radius,
+# 1 / mass, 1 / moment of inertia, material; load: what contacts do now, mean of the motions before and after a kick;
 # kept: constant load, impulse of contacts, quaternion
 X, V, W, RUSH, RADIUS, SOFT, INERT, MATERIAL = 0, 3, 6, 9, 12, 13, 14, 15
 LOAD, MEAN = 0, 6

@@ -26,7 +26,6 @@ from parsim.solid.blocks import (
     X,
     height,
 )
-from parsim.solid.forces import coefficients
 from parsim.solid.laws.law import LINE, SPOT
 from parsim.solid.motion import stand, update_momentum
 from parsim.solid.search import A, B
@@ -45,8 +44,8 @@ class Heap(NamedTuple):
 
     rows (n,): of the table of bodies; row (bodies,): the other way; move, load, kept (n + 1, 16): see `blocks`. Of the
     pairs that are near, whole blocks, those with walls last: a, b, balls; wall, -1: none; number, of the pair, -1:
-    none; pair: their blocks. scratch: of one block; heat (64,), J; count (2,): blocks without walls, all. law: (its number,
-    curvature, rolling or not)."""
+    none; pair: their blocks. scratch: of one block; heat (64,), J; count (2,): blocks without walls, all. law: (its
+    number, curvature, rolling or not)."""
 
     rows: np.ndarray
     row: np.ndarray
@@ -83,9 +82,7 @@ def heap_of(m, touch, island):
             kept[i, QUATERNION + k] = m[b, table.QUATERNION + k]
         move[i, RADIUS], move[i, SOFT], move[i, INERT] = m[b, table.HALF], m[b, table.LIGHT], m[b, table.INVERSE + 1]
         move[i, MATERIAL] = m[b, table.MATERIAL]
-    rolls = False
-    for c in which:
-        rolls = rolls or coefficients(m, touch, touch.pairs[c, A], touch.pairs[c, B])[4] > 0.0
+    rolls = np.max(touch.pair_law[4]) > 0.0
     return Heap(
         rows,
         row,
