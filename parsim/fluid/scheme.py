@@ -54,6 +54,16 @@ class Solids(Protocol):
         The accelerations that follow, and the pressures with them, are then those of the samples.
         """
 
+    def loosen(self, flow, reaction, weight, unit, time, dt):
+        """The same without the pressures of the water: how what they push gives way, a `Mobility`, None if nothing.
+
+        `reaction` is that without them; one, Pa, in a particle of water adds to it, N, `unit` times `weight` times the
+        distance from a sample, m.
+        """
+
+    def give_way(self, flow, change, dt):
+        """Change the accelerations of bodies and of their samples by `change` (bodies, 6), m/s2 and 1/s2."""
+
     def driven(self, time):
         """Whether anything solid is driven from outside at `time`, s."""
 

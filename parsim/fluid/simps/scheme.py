@@ -1,0 +1,178 @@
+"""Semi-implicit MPS (Amaro et al. 2021, sec. 4.1): pressures by one equation for all water and the bodies in it.
+
+A step looks at the particles half way: viscosity, gravity and collisions predict velocities, the pressure equation
+finds what these lack to keep the volume of the water, with the accelerations that the same pressures give to bodies,
+and the gradient of the pressures corrects them. Only the flow limits the time step.
+"""
+
+import math
+
+import numpy as np
+
+from parsim.fluid import surface
+from parsim.fluid.reference import Lattice
+from parsim.fluid.simps import sweeps, tables
+from parsim.fluid.simps.fields import NORMAL
+from parsim.fluid.simps.solver import Solver
+from parsim.fluid.wcmps.sweeps import boundary_pressure
+from parsim.fluid.wcmps.updates import drift, extremes, kick
+from parsim.machine.timers import Timers
+from parsim.particles.state import SURFACE, VELOCITY
+
+_SLOWEST = 0.05  # of the largest expected speed: what the time step takes water at rest for
+
+
+class SIMPS:
+    """The scheme for one case: constants, and the sweeps in their order. solver: of the pressure equation."""
+
+    STATE = ("x", "y", "z", "u", "v", "w", "p")
+
+    def __init__(self, case, timers=None):
+        water, choice = case.water, case.water.scheme
+        self.timers, self._choice = timers or Timers(), choice
+        self.lattice = lattice = Lattice(case.dimensions, case.spacing, choice.support, choice.weight)
+        self.density, self.sound, self.viscosity = water.density, case.sound_speed, water.viscosity
+        self.mass = water.density * lattice.volume
+        self.solver = Solver(choice.tolerance, choice.iterations)
+        self._courant, self._slowest = case.run.cfl * choice.courant, _SLOWEST * case.speed
+        self._laplacian = 2.0 * lattice.dimensions / (lattice.spread * lattice.number)
+        self._kappa = _mirrored(lattice, 0), _mirrored(lattice, 1)
+        self._fading = 2.0 * self.viscosity * self._laplacian * lattice.number  # 1/s
+        self._pairs = np.zeros(0)
+
+    def time_step(self, speed, acceleration=0.0):
+        """Stable time step, s, at the largest speed, m/s (eq. 32), and acceleration, m/s2: nothing passes its neighbour."""
+        spacing = self.lattice.spacing
+        limits = [self._courant * spacing / max(speed, self._slowest)]
+        if acceleration > 0.0:
+            limits.append(self._courant * math.sqrt(2.0 * spacing / acceleration))
+        if self._fading > 0.0:
+            limits.append(1.0 / self._fading)
+        return min(limits)
+
+    def at_rest(self, pressure):
+        """Fields of water at rest at pressures (n,), Pa: these."""
+        return {"p": pressure}
+
+    def compression(self, p, at):
+        """Density of the particles `at` over that of the water at no pressure, (n,)."""
+        return 1.0 + self._choice.compressibility * p.p[at]
+
+    def elastic(self, p, at):
+        """Elastic energy of the particles `at`, J, (n,)."""
+        return 0.5 * self._choice.compressibility * self.lattice.volume * p.p[at] ** 2
+
+    def rubbed(self, flow, solids, at):
+        """Nothing rubs: (n, 3)."""
+        return np.zeros((at.size, 3))
+
+    def extremes(self, p, near, start):
+        """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
+        return [math.sqrt(e) for e in extremes(near.fluid, p.velocity, p.place, start)]
+
+    def step(self, flow, solids, time, dt):
+        """One step: see the module. `STATE` is left to be refreshed."""
+        p, near, domain = flow.particles, flow.near, flow.domain
+        with self.timers("predict"):
+            solids.place(flow, time, 0.5 * dt)
+            drift(p.kind, p.velocity, 0.5 * dt, p.place)
+            self._predict(flow, dt)
+        with self.timers("bodies"):
+            mobility = self._loosen(flow, solids, time, dt)
+        with self.timers("pressure"):
+            equation, factor = self._assemble(flow, mobility, dt)
+            forces = self.solver.solve(flow, equation, mobility, factor, time)
+            domain.refresh("p")
+        with self.timers("bodies"):
+            if mobility:
+                solids.give_way(flow, mobility.accelerations(forces), dt)
+            fall = (*flow.gravity, self.density)
+            boundary_pressure(
+                near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight, fall, p.p
+            )
+            if solids.pushed():
+                solids.push(flow, self._react(flow, near.body, 1.0), time, dt)
+            if solids.driven(time + 0.5 * dt):
+                solids.drive(flow, self._react(flow, near.gate, 1.0), time + 0.5 * dt, dt)
+        with self.timers("move"):
+            self._correct(flow, dt)
+        solids.advance(flow, time, dt)
+        with self.timers("move"):
+            drift(p.kind, p.velocity, 0.5 * dt, p.place)
+
+    def _predict(self, flow, dt):
+        """Velocities without the pressure, and which particles are at the surface."""
+        p, near, domain, lattice, choice = flow.particles, flow.near, flow.domain, self.lattice, self._choice
+        close2 = (choice.collision_distance * lattice.spacing) ** 2
+        drag = self.viscosity * self._laplacian
+        given = tables.Prediction(lattice.own, lattice.whole, drag, close2, 1.0 + choice.restitution, dt)
+        around = tables.Around(p.c, p.n, p.vectors(NORMAL))
+        at, lists = near.fluid, near.lists
+        sweeps.predict(at, lists, p.kinematics, p.scale, lattice.weight, given, p.acceleration, around)
+        kick(at, flow.gravity, 1.0, dt, p.acceleration, p.velocity)
+        bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
+        surface.classify(at, lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
+        domain.refresh(*VELOCITY, *NORMAL, "surface")
+        surface.mark(at, lists, p.place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
+
+    def _loosen(self, flow, solids, time, dt):
+        """How the bodies give way, a `Mobility`, or None; their samples then have what they do without pressures."""
+        if not solids.pushed():
+            return None
+        lattice, unit = self.lattice, self._laplacian * self.lattice.volume
+        return solids.loosen(flow, self._react(flow, flow.near.body, 0.0), lattice.weight, unit, time, dt)
+
+    def _assemble(self, flow, mobility, dt):
+        """The pressure equation, a `tables.Equation`, and what the bodies' part of it is times."""
+        p, near, choice, lattice = flow.particles, flow.near, self._choice, self.lattice
+        if self._pairs.size != near.index.size:
+            self._pairs = np.empty(near.index.size)
+        equation = tables.Equation(self._pairs, *np.zeros((2, len(p))))
+        stiff = self.density / (dt * dt * self._laplacian)
+        balance = tables.Balance(
+            0.5 * lattice.spread,
+            self.density / dt,
+            stiff * choice.compressibility,
+            stiff * choice.relaxation,
+            lattice.number,
+            *self._kappa,
+            dt,
+            choice.divergence,
+        )
+        state = p.p, p.c, p.n, p.surface, p.scale
+        sweeps.assemble(
+            near.fluid, near.lists, p.kinematics, p.acceleration, state, lattice.weight, balance, equation
+        )
+        if mobility:
+            mobility.diagonal(self.density, equation.diagonal)
+        return equation, self.density
+
+    def _react(self, flow, at, share):
+        """Forces of the water on the samples `at`, N, a `tables.Reaction`; `share` of the pressures of the water."""
+        p, count, lattice = flow.particles, at.size, self.lattice
+        out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
+        unit = 0.5 * self._laplacian * lattice.volume
+        forces = (unit, share, self.density, *flow.gravity)
+        sweeps.reaction(at, flow.near.lists, p.place, p.acceleration, (p.p, p.scale), lattice.weight, forces, out)
+        return out
+
+    def _correct(self, flow, dt):
+        """Velocities by the gradient of the pressure, whose negative part does nothing: water does not pull."""
+        p, near, lattice = flow.particles, flow.near, self.lattice
+        even, planar = lattice.number / lattice.dimensions, float(lattice.dimensions == 2)
+        slope = tables.Slope(self._choice.least_pressure, self.density, even, planar, *flow.gravity)
+        acceleration, pressures = p.acceleration, (np.maximum(p.p, 0.0), p.scale)
+        sweeps.gradient(
+            near.fluid, near.lists, p.place, acceleration, pressures, lattice.weight, slope, acceleration
+        )
+        kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)
+
+
+def _mirrored(lattice, rows):
+    """What the missing weight of a particle with so many rows above it is times: pressure zero on a flat surface.
+
+    The pressures above it are those below, mirrored; half a spacing above the first row they are zero.
+    """
+    missing = [(w, up) for w, _, _, up in lattice.points() if up > (rows + 0.5) * lattice.spacing]
+    weight, moment = math.fsum(w for w, _ in missing), math.fsum(w * up for w, up in missing)
+    return moment / (weight * (rows + 0.5) * lattice.spacing) if weight > 0.0 else 0.0
