@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from parsim.fluid import surface
+from parsim.fluid import friction, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.simps import sweeps, tables
-from parsim.fluid.simps.fields import NORMAL
+from parsim.fluid.simps.fields import NORMAL, VISCOUS
 from parsim.fluid.simps.solver import Solver
 from parsim.fluid.wcmps.sweeps import boundary_pressure
 from parsim.fluid.wcmps.updates import drift, extremes, kick
@@ -38,6 +38,8 @@ class SIMPS:
         self._laplacian = 2.0 * lattice.dimensions / (lattice.spread * lattice.number)
         self._kappa = _mirrored(lattice, 0), _mirrored(lattice, 1)
         self._fading = 2.0 * self.viscosity * self._laplacian * lattice.number  # 1/s
+        self._rest = self.time_step(0.0, math.hypot(*case.gravity))
+        self._smooth = Lattice(case.dimensions, case.spacing, choice.support, friction.WEIGHT)
         self._pairs = np.zeros(0)
 
     def time_step(self, speed, acceleration=0.0):
@@ -63,8 +65,11 @@ class SIMPS:
         return 0.5 * self._choice.compressibility * self.lattice.volume * p.p[at] ** 2
 
     def rubbed(self, flow, solids, at):
-        """Nothing rubs: (n, 3)."""
-        return np.zeros((at.size, 3))
+        """Force of friction, N, on the samples `at` as it was found last: (n, 3)."""
+        out, p = np.zeros((at.size, 3)), flow.particles
+        if rubbing := solids.rubbing(p):
+            friction.drag_samples(at, flow.near.lists, p.kinematics, self._smooth.weight, rubbing, 0.0, out)
+        return self.mass * out
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
@@ -76,7 +81,7 @@ class SIMPS:
         with self.timers("predict"):
             solids.place(flow, time, 0.5 * dt)
             drift(p.kind, p.velocity, 0.5 * dt, p.place)
-            self._predict(flow, dt)
+            self._predict(flow, solids, dt)
         with self.timers("bodies"):
             mobility = self._loosen(flow, solids, time, dt)
         with self.timers("pressure"):
@@ -91,28 +96,30 @@ class SIMPS:
                 near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight, fall, p.p
             )
             if solids.pushed():
-                solids.push(flow, self._react(flow, near.body, 1.0), time, dt)
+                solids.push(flow, self._react(flow, solids, near.body, 1.0), time, dt)
             if solids.driven(time + 0.5 * dt):
-                solids.drive(flow, self._react(flow, near.gate, 1.0), time + 0.5 * dt, dt)
+                solids.drive(flow, self._react(flow, solids, near.gate, 1.0), time + 0.5 * dt, dt)
         with self.timers("move"):
             self._correct(flow, dt)
         solids.advance(flow, time, dt)
         with self.timers("move"):
             drift(p.kind, p.velocity, 0.5 * dt, p.place)
 
-    def _predict(self, flow, dt):
+    def _predict(self, flow, solids, dt):
         """Velocities without the pressure, and which particles are at the surface."""
         p, near, domain, lattice, choice = flow.particles, flow.near, flow.domain, self.lattice, self._choice
         close2 = (choice.collision_distance * lattice.spacing) ** 2
         drag = self.viscosity * self._laplacian
         given = tables.Prediction(lattice.own, lattice.whole, drag, close2, 1.0 + choice.restitution, dt)
-        around = tables.Around(p.c, p.n, p.vectors(NORMAL))
+        around = tables.Around(p.c, p.n, p.vectors(NORMAL), p.vectors(VISCOUS))
         at, lists = near.fluid, near.lists
         sweeps.predict(at, lists, p.kinematics, p.scale, lattice.weight, given, p.acceleration, around)
+        if rubbing := solids.rub(flow):
+            friction.drag_water(at, lists, p.kinematics, self._smooth.weight, rubbing, 0.0, p.acceleration)
         kick(at, flow.gravity, 1.0, dt, p.acceleration, p.velocity)
         bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
         surface.classify(at, lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
-        domain.refresh(*VELOCITY, *NORMAL, "surface")
+        domain.refresh(*VELOCITY, *NORMAL, *VISCOUS, "surface")
         surface.mark(at, lists, p.place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
 
     def _loosen(self, flow, solids, time, dt):
@@ -120,7 +127,7 @@ class SIMPS:
         if not solids.pushed():
             return None
         lattice, unit = self.lattice, self._laplacian * self.lattice.volume
-        return solids.loosen(flow, self._react(flow, flow.near.body, 0.0), lattice.weight, unit, time, dt)
+        return solids.loosen(flow, self._react(flow, solids, flow.near.body, 0.0), lattice.weight, unit, time, dt)
 
     def _assemble(self, flow, mobility, dt):
         """The pressure equation, a `tables.Equation`, and what the bodies' part of it is times."""
@@ -133,11 +140,12 @@ class SIMPS:
             0.5 * lattice.spread,
             self.density / dt,
             stiff * choice.compressibility,
-            stiff * choice.relaxation,
+            stiff * choice.relaxation * dt / self._rest,
             lattice.number,
             *self._kappa,
             dt,
             choice.divergence,
+            *(self.density * g for g in flow.gravity),
         )
         state = p.p, p.c, p.n, p.surface, p.scale
         sweeps.assemble(
@@ -147,24 +155,23 @@ class SIMPS:
             mobility.diagonal(self.density, equation.diagonal)
         return equation, self.density
 
-    def _react(self, flow, at, share):
+    def _react(self, flow, solids, at, share):
         """Forces of the water on the samples `at`, N, a `tables.Reaction`; `share` of the pressures of the water."""
         p, count, lattice = flow.particles, at.size, self.lattice
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
         unit = 0.5 * self._laplacian * lattice.volume
         forces = (unit, share, self.density, *flow.gravity)
         sweeps.reaction(at, flow.near.lists, p.place, p.acceleration, (p.p, p.scale), lattice.weight, forces, out)
-        return out
+        return out._replace(force=out.force + self.rubbed(flow, solids, at))
 
     def _correct(self, flow, dt):
         """Velocities by the gradient of the pressure, whose negative part does nothing: water does not pull."""
         p, near, lattice = flow.particles, flow.near, self.lattice
         even, planar = lattice.number / lattice.dimensions, float(lattice.dimensions == 2)
-        slope = tables.Slope(self._choice.least_pressure, self.density, even, planar, *flow.gravity)
-        acceleration, pressures = p.acceleration, (np.maximum(p.p, 0.0), p.scale)
-        sweeps.gradient(
-            near.fluid, near.lists, p.place, acceleration, pressures, lattice.weight, slope, acceleration
-        )
+        calm = self._choice.noise_damping / (dt * lattice.number**2)
+        slope = tables.Slope(self._choice.least_pressure, self.density, even, planar, calm, *flow.gravity)
+        acceleration, fields = p.acceleration, (np.maximum(p.p, 0.0), p.scale, *p.vectors(VISCOUS))
+        sweeps.gradient(near.fluid, near.lists, p.place, acceleration, fields, lattice.weight, slope, acceleration)
         kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)
 
 

@@ -31,7 +31,12 @@ class Settings(Table):
     divergence: Share = Field(
         1.0, description="share of the divergence of the velocity that a step takes away; the article's is 0.01"
     )
-    relaxation: Share = Field(0.01, description="share of what the water lies too close that a step takes away")
+    relaxation: Share = Field(
+        0.01, description="share of what water lies too close that a step as long as at rest takes away"
+    )
+    noise_damping: Share = Field(
+        0.2, description="share of what changes from particle to particle that a step takes away; the article's is 0"
+    )
     least_pressure: Share = Field(
         0.3, description="share of the least pressure around in what gradients count from; the article's is 1"
     )

@@ -27,8 +27,9 @@ def predict(at, lists, kinematics, scale, weight, given, change, around):
     u, v, w = kinematics.velocity
     own, whole, drag, close2, bounce, dt = given
     ax, ay, az = change.x, change.y, change.z
-    c, n, inward = around.concentration, around.number, around.inward
+    c, n, inward, viscous = around.concentration, around.number, around.inward, around.viscous
     nx, ny, nz = inward.x, inward.y, inward.z
+    bx, by, bz = viscous.x, viscous.y, viscous.z
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi = x[i], y[i], z[i], u[i], v[i], w[i]
@@ -76,6 +77,7 @@ def predict(at, lists, kinematics, scale, weight, given, change, around):
         az[i] = drag * lz + bounce / dt * hz
         c[i], n[i] = filled / whole, every
         nx[i], ny[i], nz[i] = mx, my, mz
+        bx[i], by[i], bz[i] = lx, ly, lz
 
 
 @rows
@@ -86,19 +88,20 @@ def assemble(at, lists, kinematics, acceleration, state, weight, balance, equati
     and what lies too close. kappa (n0 - n) stands for the water that is wanting at the surface, with the pressure that
     mirrors it there, zero half a spacing above its first row. At walls and bodies, whose pressures are mirrored too,
     what is left of sum W (p_i - p_j) is the divergence by the velocity that they have after dt without any pressure.
-    state: p (n,), Pa, of the step before, concentration, sum of the weights, surface, scale.
+    Inside, where particles lie unevenly, the linear field of water at rest, rise (3,) in Pa/m, is no solution of that;
+    what its sum wants is added on the right. Without, still water loses a per cent of its level. state: p (n,), Pa, of the step before, concentration, sum of the weights, surface, scale.
     """
     start, middle, end, index = lists.start, lists.middle, lists.end, lists.index
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     ax, ay, az = acceleration
     p, c, n, surface, scale = state
-    half, rate, soft, relaxed, number, top, below, dt, share = balance
+    half, rate, soft, relaxed, number, top, below, dt, share, hx, hy, hz = balance
     pairs, diagonal, right = equation.pairs, equation.diagonal, equation.right
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi = x[i], y[i], z[i], u[i], v[i], w[i]
-        every, opens = 0.0, 0.0
+        every, opens, rises = 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
@@ -106,6 +109,7 @@ def assemble(at, lists, kinematics, acceleration, state, weight, balance, equati
             wt, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             pairs[t] = wt
             every += wt
+            rises += wt * (hx * dx + hy * dy + hz * dz)
             opens += g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
         opens *= half
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
@@ -114,13 +118,16 @@ def assemble(at, lists, kinematics, acceleration, state, weight, balance, equati
             r2 = dx * dx + dy * dy + dz * dz
             wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             du, dv, dw = u[j] + dt * ax[j] - ui, v[j] + dt * ay[j] - vi, w[j] + dt * az[j] - wi
-            opens += scale[j] * wt * (du * dx + dv * dy + dw * dz)
+            wt *= scale[j]
+            rises += wt * (hx * dx + hy * dy + hz * dz)
+            opens += wt * (du * dx + dv * dy + dw * dz)
         closer = c[i] - 1.0
         if surface[i] != INTERNAL:
             every += (below if surface[i] == VICINITY else top) * max(number - n[i], 0.0)
             closer = max(closer, 0.0)
+            rises = 0.0
         diagonal[i] = every + soft
-        right[i] = soft * p[i] + relaxed * closer - share * rate * opens
+        right[i] = soft * p[i] + relaxed * closer - share * rate * opens - rises
 
 
 @rows
@@ -155,29 +162,35 @@ def solved(xx, xy, xz, yy, yz, zz, right, least):
 
 
 @rows
-def gradient(at, lists, place, acceleration, pressures, weight, slope, out):
+def gradient(at, lists, place, acceleration, fields, weight, slope, out):
     """Acceleration by the pressure of the fluid particles `at`: the gradient of first order (eq. 18) over -density.
 
-    It counts from p_i and by a share from the least pressure around instead, which pushes particles apart. pressures: p
-    and scale (n,). `acceleration` holds that of what is solid; `out` is the same.
+    It counts from p_i and by a share from the least pressure around instead, which pushes particles apart. Less `calm`
+    times the viscous sum of the viscous sums b of `predict`: what changes from particle to particle, which the equation
+    sees and this gradient does not quite undo, grows from step to step without. fields: p, scale, b (n,).
+    `acceleration` holds that of what is solid; `out` is the same.
     """
     start, middle, end, index = lists.start, lists.middle, lists.end, lists.index
     x, y, z = place
     ax, ay, az = acceleration
     ox, oy, oz = out.x, out.y, out.z
-    p, scale = pressures
-    least, density, even, planar, gx, gy, gz = slope
+    p, scale, bx, by, bz = fields
+    least, density, even, planar, calm, gx, gy, gz = slope
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, pi = x[i], y[i], z[i], p[i]
-        lowest = pi
+        lowest, bxi, byi, bzi = pi, bx[i], by[i], bz[i]
+        lx, ly, lz = 0.0, 0.0, 0.0
         sx, sy, sz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, planar * even, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
-            _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            wt, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            lx += wt * (bx[j] - bxi)
+            ly += wt * (by[j] - byi)
+            lz += wt * (bz[j] - bzi)
             lowest = min(lowest, p[j] if g > 0.0 else lowest)
             ex, ey, ez = g * dx, g * dy, g * dz
             f = p[j] - pi
@@ -208,7 +221,7 @@ def gradient(at, lists, place, acceleration, pressures, weight, slope, out):
         sx, sy, sz, regular = solved(xx, xy, xz, yy, yz, zz, right, _SINGULAR * even * even * even)
         if not regular:
             sx, sy, sz = right[0] / even, right[1] / even, right[2] / even
-        ox[i], oy[i], oz[i] = -sx / density, -sy / density, -sz / density
+        ox[i], oy[i], oz[i] = -sx / density - calm * lx, -sy / density - calm * ly, -sz / density - calm * lz
 
 
 @rows

@@ -19,17 +19,18 @@ class Prediction(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What a particle sees around it: concentration (n,), sum of the weights (n,), inward sum."""
+    """What a particle sees around it: concentration (n,), sum of the weights (n,), inward sum, viscous sum, m/s."""
 
     concentration: np.ndarray
     number: np.ndarray
     inward: Vectors
+    viscous: Vectors
 
 
 class Balance(NamedTuple):
     """Constants of `assemble`: half the spread, m2; rate = density / dt; density over dt2 in units of the matrix, with
     compressibility and with relaxation; number n0; kappa of particles at the surface and in its vicinity; dt, s;
-    divergence, share of it that is taken away."""
+    divergence, share of it that is taken away; rise of the pressure of water at rest, Pa/m."""
 
     half: float
     rate: float
@@ -40,6 +41,9 @@ class Balance(NamedTuple):
     vicinity: float
     dt: float
     divergence: float
+    hx: float
+    hy: float
+    hz: float
 
 
 class Equation(NamedTuple):
@@ -51,12 +55,14 @@ class Equation(NamedTuple):
 
 
 class Slope(NamedTuple):
-    """Constants of `gradient`: share of the least pressure; density, kg/m3; even = n0 / d; planar, 1 in 2D; gravity."""
+    """Constants of `gradient`: share of the least pressure; density, kg/m3; even = n0 / d; planar, 1 in 2D; calm, 1/s;
+    gravity, m/s2."""
 
     least: float
     density: float
     even: float
     planar: float
+    calm: float
     gx: float
     gy: float
     gz: float
