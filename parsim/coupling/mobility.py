@@ -16,20 +16,19 @@ _MOST = 8  # bodies that one particle of water may see; it pushes the first ones
 
 
 class Mobility:
-    """Of all bodies in a step: `inverse` (bodies, 6, 6) is K; `unit`, force over weight times distance times pressure.
+    """Of all bodies in a step: `inverse` (bodies, 6, 6) is K.
 
     `units` (6,) of exact sums of forces and torques. `at` (m,), `body` (m,), `rows` (m, 6): which water sees which body,
-    and J over `unit`.
+    and J: force and torque, N and N m, of one Pa there. faces: `Sides`, weight, wetness (n,): see `sides.wet`.
     """
 
-    def __init__(self, domain, near, beside, samples, centre, inverse, weight, unit, units):
+    def __init__(self, domain, near, beside, samples, centre, inverse, faces, units):
         p = domain.particles
-        self._domain, self.inverse, self._unit, self._units = domain, inverse, unit, np.array(units)
+        self._domain, self.inverse, self._units = domain, inverse, np.array(units)
         count = len(beside) * _MOST
         at, body, rows = np.empty(count, np.int64), np.empty(count, np.int64), np.empty((count, 6))
-        number = levers_of_water(
-            beside, near.lists, p.place, (p.body, p.scale, samples.shift, centre), weight, at, body, rows
-        )
+        of_samples = p.body, samples.shift, centre
+        number = levers_of_water(beside, near.lists, p.place, of_samples, faces, at, body, rows)
         self.at, self.body, self.rows = at[:number], body[:number], rows[:number]
 
     def __bool__(self):
@@ -37,7 +36,7 @@ class Mobility:
 
     def forces(self, values):
         """Forces and torques (bodies, 6), N and N m, of pressures `values` (particles,), Pa, on all bodies."""
-        each = self._unit * values[self.at][:, None] * self.rows
+        each = values[self.at][:, None] * self.rows
         return self._domain.sum(each, self._units, self.body, len(self.inverse))
 
     def accelerations(self, forces):
@@ -47,23 +46,24 @@ class Mobility:
         return out
 
     def open(self, accelerations, factor, out):
-        """Add to `out` (particles,) what `accelerations` (bodies, 6) make room by: `factor` times J over `unit`."""
+        """Add to `out` (particles,) what `accelerations` (bodies, 6) make room by: `factor` times J times these."""
         make_room(self.at, self.body, self.rows, accelerations, factor, out)
 
     def diagonal(self, factor, out):
-        """Add to `out` (particles,) the diagonal of J K J^T: `factor` times `unit` times that of J over `unit`."""
-        own(self.at, self.body, self.rows, self.inverse, factor * self._unit, out)
+        """Add to `out` (particles,) `factor` times the diagonal of J K J^T."""
+        own(self.at, self.body, self.rows, self.inverse, factor, out)
 
 
 @kernel
-def levers_of_water(beside, lists, place, of_samples, weight, at, body, rows):
-    """Of the water `beside` bodies sum s W (r, arm x r) over the samples of each that it sees: number of rows written.
+def levers_of_water(beside, lists, place, of_samples, faces, at, body, rows):
+    """Of the water `beside` bodies the force and torque of one Pa on each body that it sees: number of rows written.
 
-    r leads from the water to the sample. of_samples: body, scale, shift of each particle, centres (bodies, 3).
+    of_samples: body and shift of each particle, centres (bodies, 3); faces: see `Mobility`.
     """
     _, middle, end, index = lists
     x, y, z = place
-    whose, scale, shift, centre = of_samples
+    whose, shift, centre = of_samples
+    (area, way, least), weight, wetness = faces
     number = 0
     for i in beside:
         first = number
@@ -72,7 +72,9 @@ def levers_of_water(beside, lists, place, of_samples, weight, at, body, rows):
             b = whose[j]
             if b < 0:
                 continue
-            dx, dy, dz = x[j] - x[i], y[j] - y[i], z[j] - z[i]
+            dx, dy, dz = x[i] - x[j], y[i] - y[j], z[i] - z[j]
+            if dx * area[j, 0] + dy * area[j, 1] + dz * area[j, 2] <= 0.0:
+                continue
             r2 = dx * dx + dy * dy + dz * dz
             wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             if wt <= 0.0:
@@ -86,10 +88,11 @@ def levers_of_water(beside, lists, place, of_samples, weight, at, body, rows):
                 at[k], body[k] = i, b
                 rows[k, :] = 0.0
                 number += 1
-            f = scale[j] * wt
-            ex, ey, ez = f * dx, f * dy, f * dz
-            px, py, pz = x[j] - shift[j, 0] - centre[b, 0], y[j] - shift[j, 1] - centre[b, 1], z[j] - centre[b, 2]
-            pz -= shift[j, 2]
+            f = -wt / max(wetness[j], least)
+            ex, ey, ez = f * area[j, 0], f * area[j, 1], f * area[j, 2]
+            px = x[j] - shift[j, 0] - centre[b, 0]
+            py = y[j] - shift[j, 1] - centre[b, 1]
+            pz = z[j] - shift[j, 2] - centre[b, 2]
             rows[k, 0] += ex
             rows[k, 1] += ey
             rows[k, 2] += ez

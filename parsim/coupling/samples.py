@@ -145,11 +145,11 @@ class BodySamples:
         self.place(p, *pose)
         return load
 
-    def mobility(self, domain, near, pose, added, weight, unit, step):
+    def mobility(self, domain, near, pose, added, faces, step):
         """How the bodies answer to pressures of the water: a `Mobility`. The rest: see `answer`, `Solids.loosen`."""
         inverse = np.empty((len(self.bodies), 6, 6))
         mobilities(added, self._given(pose, step), inverse)
-        return Mobility(domain, near, self._beside, self, pose[0], inverse, weight, unit, self._units[0])
+        return Mobility(domain, near, self._beside, self, pose[0], inverse, faces, self._units[0])
 
     def _given(self, pose, step):
         b = self.bodies

@@ -54,11 +54,13 @@ class Solids(Protocol):
         The accelerations that follow, and the pressures with them, are then those of the samples.
         """
 
-    def loosen(self, flow, reaction, weight, unit, time, dt):
+    def sides(self, flow, weight, dt):
+        """What bodies show of their surface in this step, a `sides.Sides`; the field `n` of samples: how wet they are."""
+
+    def loosen(self, flow, reaction, faces, time, dt):
         """The same without the pressures of the water: how what they push gives way, a `Mobility`, None if nothing.
 
-        `reaction` is that without them; one, Pa, in a particle of water adds to it, N, `unit` times `weight` times the
-        distance from a sample, m.
+        `reaction` is that without them; faces: what `sides` gave, its weight, how wet samples are.
         """
 
     def give_way(self, flow, change, dt):

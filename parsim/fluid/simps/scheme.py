@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from parsim.coupling.sides import press
 from parsim.fluid import friction, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.simps import sweeps, tables
@@ -81,11 +82,12 @@ class SIMPS:
         with self.timers("predict"):
             solids.place(flow, time, 0.5 * dt)
             drift(p.kind, p.velocity, 0.5 * dt, p.place)
+            sides = solids.sides(flow, self.lattice.weight, dt)
             self._predict(flow, solids, dt)
         with self.timers("bodies"):
-            mobility = self._loosen(flow, solids, time, dt)
+            mobility = self._loosen(flow, solids, sides, time, dt)
         with self.timers("pressure"):
-            equation, factor = self._assemble(flow, mobility, dt)
+            equation, factor = self._assemble(flow, mobility, sides, dt)
             forces = self.solver.solve(flow, equation, mobility, factor, time)
             domain.refresh("p")
         with self.timers("bodies"):
@@ -96,9 +98,9 @@ class SIMPS:
                 near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight, fall, p.p
             )
             if solids.pushed():
-                solids.push(flow, self._react(flow, solids, near.body, 1.0), time, dt)
+                solids.push(flow, self._press(flow, solids, sides, 1.0), time, dt)
             if solids.driven(time + 0.5 * dt):
-                solids.drive(flow, self._react(flow, solids, near.gate, 1.0), time + 0.5 * dt, dt)
+                solids.drive(flow, self._react(flow, solids), time + 0.5 * dt, dt)
         with self.timers("move"):
             self._correct(flow, dt)
         solids.advance(flow, time, dt)
@@ -119,17 +121,17 @@ class SIMPS:
         kick(at, flow.gravity, 1.0, dt, p.acceleration, p.velocity)
         bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
         surface.classify(at, lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
-        domain.refresh(*VELOCITY, *NORMAL, *VISCOUS, "surface")
+        domain.refresh(*VELOCITY, *NORMAL, *VISCOUS, "surface", "n")
         surface.mark(at, lists, p.place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
 
-    def _loosen(self, flow, solids, time, dt):
+    def _loosen(self, flow, solids, sides, time, dt):
         """How the bodies give way, a `Mobility`, or None; their samples then have what they do without pressures."""
         if not solids.pushed():
             return None
-        lattice, unit = self.lattice, self._laplacian * self.lattice.volume
-        return solids.loosen(flow, self._react(flow, solids, flow.near.body, 0.0), lattice.weight, unit, time, dt)
+        faces = sides, self.lattice.weight, flow.particles.n
+        return solids.loosen(flow, self._press(flow, solids, sides, 0.0), faces, time, dt)
 
-    def _assemble(self, flow, mobility, dt):
+    def _assemble(self, flow, mobility, sides, dt):
         """The pressure equation, a `tables.Equation`, and what the bodies' part of it is times."""
         p, near, choice, lattice = flow.particles, flow.near, self._choice, self.lattice
         if self._pairs.size != near.index.size:
@@ -148,20 +150,24 @@ class SIMPS:
             *(self.density * g for g in flow.gravity),
         )
         state = p.p, p.c, p.n, p.surface, p.scale
-        sweeps.assemble(
-            near.fluid, near.lists, p.kinematics, p.acceleration, state, lattice.weight, balance, equation
-        )
-        if mobility:
-            mobility.diagonal(self.density, equation.diagonal)
-        return equation, self.density
+        swept = 1.0 / (self._laplacian * lattice.volume)
+        motion, bodies = (p.kinematics, p.acceleration), (p.body, sides.area, sides.least, swept)
+        sweeps.assemble(near.fluid, near.lists, motion, state, lattice.weight, bodies, balance, equation)
+        return equation, self.density * swept
 
-    def _react(self, flow, solids, at, share):
-        """Forces of the water on the samples `at`, N, a `tables.Reaction`; `share` of the pressures of the water."""
-        p, count, lattice = flow.particles, at.size, self.lattice
-        out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
-        unit = 0.5 * self._laplacian * lattice.volume
-        forces = (unit, share, self.density, *flow.gravity)
-        sweeps.reaction(at, flow.near.lists, p.place, p.acceleration, (p.p, p.scale), lattice.weight, forces, out)
+    def _press(self, flow, solids, sides, share):
+        """Forces of the water on the samples of bodies, N, a `tables.Reaction`; `share` of its pressures."""
+        p, at = flow.particles, flow.near.body
+        out, water = _reaction(at.size), (self.lattice.weight, p.p, p.n, share, self.density, flow.gravity)
+        press(at, flow.near.lists, p.place, p.acceleration, water, sides, out)
+        return out._replace(force=out.force + self.rubbed(flow, solids, at))
+
+    def _react(self, flow, solids):
+        """Forces of the water on the samples of the gate, N, a `tables.Reaction`."""
+        p, at, lattice = flow.particles, flow.near.gate, self.lattice
+        out, unit = _reaction(at.size), 0.5 * self._laplacian * lattice.volume
+        forces = (unit, self.density, *flow.gravity)
+        sweeps.reaction(at, flow.near.lists, p.place, p.acceleration, (p.p, p.scale), lattice.weight, forces, out.force)
         return out._replace(force=out.force + self.rubbed(flow, solids, at))
 
     def _correct(self, flow, dt):
@@ -173,6 +179,10 @@ class SIMPS:
         acceleration, fields = p.acceleration, (np.maximum(p.p, 0.0), p.scale, *p.vectors(VISCOUS))
         sweeps.gradient(near.fluid, near.lists, p.place, acceleration, fields, lattice.weight, slope, acceleration)
         kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)
+
+
+def _reaction(count):
+    return tables.Reaction(np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, 6)))
 
 
 def _mirrored(lattice, rows):

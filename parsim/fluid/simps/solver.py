@@ -32,7 +32,10 @@ class Solver:
         ranks alike, where the tolerance is not met.
         """
         p, domain, at = flow.particles, flow.domain, flow.near.fluid
-        inverse, out = 1.0 / equation.diagonal[at], np.zeros(len(p))
+        diagonal, out = equation.diagonal.copy(), np.zeros(len(p))
+        if mobility:
+            mobility.diagonal(factor, diagonal)
+        inverse = 1.0 / diagonal[at]
         x, right = p.p[at], equation.right[at]
         image, forces = self._applied(flow, equation, mobility, factor, "p", out)
         r = right - image

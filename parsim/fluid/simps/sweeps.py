@@ -81,27 +81,32 @@ def predict(at, lists, kinematics, scale, weight, given, change, around):
 
 
 @rows
-def assemble(at, lists, kinematics, acceleration, state, weight, balance, equation):
+def assemble(at, lists, motion, state, weight, bodies, balance, equation):
     """The pressure equation (eqs 14-15), times lambda n0 / (2 d), with all that is not pressure on its right.
 
     Water: sum W (p_i - p_j) + kappa (n0 - n)+ p_i + soft p_i; right: minus the divergence over dt, what is compressed,
     and what lies too close. kappa (n0 - n) stands for the water that is wanting at the surface, with the pressure that
     mirrors it there, zero half a spacing above its first row. At walls and bodies, whose pressures are mirrored too,
-    what is left of sum W (p_i - p_j) is the divergence by the velocity that they have after dt without any pressure.
-    Inside, where particles lie unevenly, the linear field of water at rest, rise (3,) in Pa/m, is no solution of that;
-    what its sum wants is added on the right. Without, still water loses a per cent of its level. state: p (n,), Pa, of the step before, concentration, sum of the weights, surface, scale.
+    what is left of sum W (p_i - p_j) is the divergence by the velocity that they have after dt without any pressure;
+    of bodies it is what their faces sweep, `coupling.sides`, and for their places the rise of water at rest, (3,), Pa/m.
+    Inside, where particles lie unevenly, the linear field of water at rest is no solution of that; what its sum wants
+    is added on the right. Without, still water loses a per cent of its level. motion: kinematics, acceleration; state:
+    p (n,), Pa, of the step before, concentration, sum of the weights (of samples: `sides.wet`), surface, scale;
+    bodies: number, area (n, 3), least weight before a wet face, 1 / (laplacian times the volume of a particle).
     """
     start, middle, end, index = lists.start, lists.middle, lists.end, lists.index
+    kinematics, acceleration = motion
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     ax, ay, az = acceleration
     p, c, n, surface, scale = state
+    body, area, least, swept = bodies
     half, rate, soft, relaxed, number, top, below, dt, share, hx, hy, hz = balance
     pairs, diagonal, right = equation.pairs, equation.diagonal, equation.right
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi = x[i], y[i], z[i], u[i], v[i], w[i]
-        every, opens, rises = 0.0, 0.0, 0.0
+        every, opens, rises, still = 0.0, 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
@@ -118,16 +123,24 @@ def assemble(at, lists, kinematics, acceleration, state, weight, balance, equati
             r2 = dx * dx + dy * dy + dz * dz
             wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             du, dv, dw = u[j] + dt * ax[j] - ui, v[j] + dt * ay[j] - vi, w[j] + dt * az[j] - wi
+            bare = wt
             wt *= scale[j]
-            rises += wt * (hx * dx + hy * dy + hz * dz)
-            opens += wt * (du * dx + dv * dy + dw * dz)
+            rise = wt * (hx * dx + hy * dy + hz * dz)
+            rises += rise
+            if body[j] < 0:
+                opens += wt * (du * dx + dv * dy + dw * dz)
+            else:
+                still += rise
+                if dx * area[j, 0] + dy * area[j, 1] + dz * area[j, 2] < 0.0:
+                    f = (du + hx / rate) * area[j, 0] + (dv + hy / rate) * area[j, 1] + (dw + hz / rate) * area[j, 2]
+                    opens -= swept * f * bare / max(n[j], least)
         closer = c[i] - 1.0
         if surface[i] != INTERNAL:
             every += (below if surface[i] == VICINITY else top) * max(number - n[i], 0.0)
             closer = max(closer, 0.0)
             rises = 0.0
         diagonal[i] = every + soft
-        right[i] = soft * p[i] + relaxed * closer - share * rate * opens - rises
+        right[i] = soft * p[i] + relaxed * closer - share * rate * opens + still - rises
 
 
 @rows
@@ -225,39 +238,30 @@ def gradient(at, lists, place, acceleration, fields, weight, slope, out):
 
 
 @rows
-def reaction(at, lists, place, acceleration, pressures, weight, forces, out):
-    """Forces of the water on the samples `at`, N: rows of out.force; how they depend on accelerations, out.response.
+def reaction(at, lists, place, acceleration, pressures, weight, forces, force):
+    """Forces of the water on the samples `at`, N: rows of `force` (samples, 3).
 
     Each pair of water and sample presses with the mean of the two pressures, as the pressure equation has it. forces:
-    unit = V d / (lambda n0); share of the pressures of the water that counts; density; gravity. `response`: see
-    `wcmps.sweeps.reaction`; the pressures of samples are not those here, so `lever` is zero.
+    unit = V d / (lambda n0); density; gravity.
     """
     start, middle, index = lists.start, lists.middle, lists.index
     x, y, z = place
     ax, ay, az = acceleration
     p, scale = pressures
-    unit, share, density, gx, gy, gz = forces
-    force, lever, response = out.force, out.lever, out.response
+    unit, density, gx, gy, gz = forces
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi = x[i], y[i], z[i]
         hx, hy, hz = density * (gx - ax[i]), density * (gy - ay[i]), density * (gz - az[i])
         sx, sy, sz = 0.0, 0.0, 0.0
-        xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = xi - x[j], yi - y[j], zi - z[j]
             r2 = dx * dx + dy * dy + dz * dz
             wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
-            f = wt * (2.0 * share * p[j] + hx * dx + hy * dy + hz * dz)
+            f = wt * (2.0 * p[j] + hx * dx + hy * dy + hz * dz)
             sx += f * dx
             sy += f * dy
             sz += f * dz
-            ex, ey, ez = wt * dx, wt * dy, wt * dz
-            xx, xy, xz, yy, yz, zz = xx + ex * dx, xy + ex * dy, xz + ex * dz, yy + ey * dy, yz + ey * dz, zz + ez * dz
         e = unit * scale[i]
         force[row, 0], force[row, 1], force[row, 2] = e * sx, e * sy, e * sz
-        lever[row, 0] = lever[row, 1] = lever[row, 2] = 0.0
-        e *= density
-        response[row, 0], response[row, 1], response[row, 2] = e * xx, e * xy, e * xz
-        response[row, 3], response[row, 4], response[row, 5] = e * yy, e * yz, e * zz
