@@ -95,12 +95,13 @@ def wet(at, lists, place, weight, area, out):
 def press(at, lists, place, acceleration, water, sides, out):
     """Forces, N, on the samples `at`, how they depend on accelerations: see `fluid.simps.sweeps.reaction`.
 
-    water: weight; p (n,), Pa; wetness (n,), see `wet`; share of p that counts; density; gravity (3,).
+    water: weight; p (n,), Pa; wetness (n,), see `wet`; share of p that counts; density; rise
+    of the pressure of water at rest (3,), Pa/m.
     """
     start, middle, _, index = lists
     x, y, z = place
     ax, ay, az = acceleration
-    weight, p, wetness, share, density, gravity = water
+    weight, p, wetness, share, density, rise = water
     area, way, least = sides
     for row in range(at.size):
         i = at[row]
@@ -124,10 +125,10 @@ def press(at, lists, place, acceleration, water, sides, out):
             dx, dy, dz = dx - way[i, 0], dy - way[i, 1], dz - way[i, 2]
             total += wt * p[j]
             high += wt * (dx * nx + dy * ny + dz * nz)
-            deep -= wt * (gravity[0] * dx + gravity[1] * dy + gravity[2] * dz)
+            deep -= wt * (rise[0] * dx + rise[1] * dy + rise[2] * dz)
         f = size / max(wetness[i], least)
         high = max(high, 0.0)
-        pressed = -f * (share * total + density * (deep + own * high))
+        pressed = -f * (share * total + deep + density * own * high)
         out.force[row, 0], out.force[row, 1], out.force[row, 2] = pressed * nx, pressed * ny, pressed * nz
         e = f * density * high
         out.response[row, 0], out.response[row, 1], out.response[row, 2] = e * nx * nx, e * nx * ny, e * nx * nz

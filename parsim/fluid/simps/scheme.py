@@ -17,6 +17,7 @@ from parsim.fluid.simps.fields import NORMAL, VISCOUS
 from parsim.fluid.simps.solver import Solver
 from parsim.fluid.wcmps.sweeps import boundary_pressure
 from parsim.fluid.wcmps.updates import drift, extremes, kick
+from parsim.geometry.faces import period
 from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE, VELOCITY
 
@@ -35,6 +36,8 @@ class SIMPS:
         self.density, self.sound, self.viscosity = water.density, case.sound_speed, water.viscosity
         self.mass = water.density * lattice.volume
         self.solver = Solver(choice.tolerance, choice.iterations)
+        self._give = 1.0 / (water.density * self.sound**2)  # 1/Pa: compressibility
+        self._endless = np.isfinite(period(case))
         self._courant, self._slowest = case.run.cfl * choice.courant, _SLOWEST * case.speed
         self._laplacian = 2.0 * lattice.dimensions / (lattice.spread * lattice.number)
         self._kappa = _mirrored(lattice, 0), _mirrored(lattice, 1)
@@ -59,11 +62,11 @@ class SIMPS:
 
     def compression(self, p, at):
         """Density of the particles `at` over that of the water at no pressure, (n,)."""
-        return 1.0 + self._choice.compressibility * p.p[at]
+        return 1.0 + self._give * p.p[at]
 
     def elastic(self, p, at):
         """Elastic energy of the particles `at`, J, (n,)."""
-        return 0.5 * self._choice.compressibility * self.lattice.volume * p.p[at] ** 2
+        return 0.5 * self._give * self.lattice.volume * p.p[at] ** 2
 
     def rubbed(self, flow, solids, at):
         """Force of friction, N, on the samples `at` as it was found last: (n, 3)."""
@@ -93,7 +96,7 @@ class SIMPS:
         with self.timers("bodies"):
             if mobility:
                 solids.give_way(flow, mobility.accelerations(forces), dt)
-            fall = (*flow.gravity, self.density)
+            fall = (*(h / self.density for h in self._rise(flow)), self.density)
             boundary_pressure(
                 near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight, fall, p.p
             )
@@ -106,6 +109,10 @@ class SIMPS:
         solids.advance(flow, time, dt)
         with self.timers("move"):
             drift(p.kind, p.velocity, 0.5 * dt, p.place)
+
+    def _rise(self, flow):
+        """Rise of the pressure of water at rest, (3,), Pa/m; nothing rises along an axis that repeats."""
+        return tuple(0.0 if off else self.density * g for off, g in zip(self._endless, flow.gravity, strict=True))
 
     def _predict(self, flow, solids, dt):
         """Velocities without the pressure, and which particles are at the surface."""
@@ -141,13 +148,13 @@ class SIMPS:
         balance = tables.Balance(
             0.5 * lattice.spread,
             self.density / dt,
-            stiff * choice.compressibility,
+            stiff * self._give,
             stiff * choice.relaxation * dt / self._rest,
             lattice.number,
             *self._kappa,
             dt,
             choice.divergence,
-            *(self.density * g for g in flow.gravity),
+            *self._rise(flow),
         )
         state = p.p, p.c, p.n, p.surface, p.scale
         swept = 1.0 / (self._laplacian * lattice.volume)
@@ -158,7 +165,7 @@ class SIMPS:
     def _press(self, flow, solids, sides, share):
         """Forces of the water on the samples of bodies, N, a `tables.Reaction`; `share` of its pressures."""
         p, at = flow.particles, flow.near.body
-        out, water = _reaction(at.size), (self.lattice.weight, p.p, p.n, share, self.density, flow.gravity)
+        out, water = _reaction(at.size), (self.lattice.weight, p.p, p.n, share, self.density, self._rise(flow))
         press(at, flow.near.lists, p.place, p.acceleration, water, sides, out)
         return out._replace(force=out.force + self.rubbed(flow, solids, at))
 
@@ -166,7 +173,7 @@ class SIMPS:
         """Forces of the water on the samples of the gate, N, a `tables.Reaction`."""
         p, at, lattice = flow.particles, flow.near.gate, self.lattice
         out, unit = _reaction(at.size), 0.5 * self._laplacian * lattice.volume
-        forces = (unit, self.density, *flow.gravity)
+        forces = (unit, self.density, *self._rise(flow))
         sweeps.reaction(at, flow.near.lists, p.place, p.acceleration, (p.p, p.scale), lattice.weight, forces, out.force)
         return out._replace(force=out.force + self.rubbed(flow, solids, at))
 
@@ -175,7 +182,7 @@ class SIMPS:
         p, near, lattice = flow.particles, flow.near, self.lattice
         even, planar = lattice.number / lattice.dimensions, float(lattice.dimensions == 2)
         calm = self._choice.noise_damping / (dt * lattice.number**2)
-        slope = tables.Slope(self._choice.least_pressure, self.density, even, planar, calm, *flow.gravity)
+        slope = tables.Slope(self._choice.least_pressure, self.density, even, planar, calm, *self._rise(flow))
         acceleration, fields = p.acceleration, (np.maximum(p.p, 0.0), p.scale, *p.vectors(VISCOUS))
         sweeps.gradient(near.fluid, near.lists, p.place, acceleration, fields, lattice.weight, slope, acceleration)
         kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)

@@ -188,7 +188,7 @@ def gradient(at, lists, place, acceleration, fields, weight, slope, out):
     ax, ay, az = acceleration
     ox, oy, oz = out.x, out.y, out.z
     p, scale, bx, by, bz = fields
-    least, density, even, planar, calm, gx, gy, gz = slope
+    least, density, even, planar, calm, hx, hy, hz = slope
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, pi = x[i], y[i], z[i], p[i]
@@ -221,7 +221,7 @@ def gradient(at, lists, place, acceleration, fields, weight, slope, out):
             _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             g *= scale[j]
             ex, ey, ez = g * dx, g * dy, g * dz
-            f = density * ((gx - ax[j]) * dx + (gy - ay[j]) * dy + (gz - az[j]) * dz)
+            f = (hx - density * ax[j]) * dx + (hy - density * ay[j]) * dy + (hz - density * az[j]) * dz
             sx += f * ex
             sy += f * ey
             sz += f * ez
@@ -242,17 +242,17 @@ def reaction(at, lists, place, acceleration, pressures, weight, forces, force):
     """Forces of the water on the samples `at`, N: rows of `force` (samples, 3).
 
     Each pair of water and sample presses with the mean of the two pressures, as the pressure equation has it. forces:
-    unit = V d / (lambda n0); density; gravity.
+    unit = V d / (lambda n0); density; rise of the pressure of water at rest, Pa/m.
     """
     start, middle, index = lists.start, lists.middle, lists.index
     x, y, z = place
     ax, ay, az = acceleration
     p, scale = pressures
-    unit, density, gx, gy, gz = forces
+    unit, density, fx, fy, fz = forces
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi = x[i], y[i], z[i]
-        hx, hy, hz = density * (gx - ax[i]), density * (gy - ay[i]), density * (gz - az[i])
+        hx, hy, hz = fx - density * ax[i], fy - density * ay[i], fz - density * az[i]
         sx, sy, sz = 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]

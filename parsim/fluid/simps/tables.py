@@ -56,16 +56,16 @@ class Equation(NamedTuple):
 
 class Slope(NamedTuple):
     """Constants of `gradient`: share of the least pressure; density, kg/m3; even = n0 / d; planar, 1 in 2D; calm, 1/s;
-    gravity, m/s2."""
+    rise of the pressure of water at rest, Pa/m."""
 
     least: float
     density: float
     even: float
     planar: float
     calm: float
-    gx: float
-    gy: float
-    gz: float
+    hx: float
+    hy: float
+    hz: float
 
 
 class Reaction(NamedTuple):
