@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from parsim.coupling.mobility import Mobility
 from parsim.coupling.response import added_inertia, arms_of, levers, respond
 from parsim.geometry.faces import period
 from parsim.geometry.rotation import matrices, to_body, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, Particles, make_id
 from parsim.particles.tables import Vectors
-from parsim.solid.acceleration import Given, accelerate_bodies
+from parsim.solid.acceleration import Given, accelerate_bodies, mobilities
 from parsim.solid.shapes.kernels import distance
 
 _WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
@@ -137,14 +138,22 @@ class BodySamples:
         acceleration of the step before, which is the explicit way, grows without end where the water near a body
         outweighs it. Contacts count as they were in the step before.
         """
-        b = self.bodies
-        change = np.zeros((len(b), 6))
-        (position, quaternion), others = pose, b.contact_load + b.spring_load
-        given = Given(b.mass, b.inertia, quaternion, others, b.spin, *b.constraints(*step))
+        b, change = self.bodies, np.zeros((len(self.bodies), 6))
+        given = self._given(pose, step)
         accelerate_bodies(load, added, given, np.array(gravity), b.acceleration, b.angular_acceleration, change)
-        respond(near.body, p.body, self.arms(p, near.body, position), change, lever, p.p)
-        self.place(p, position, quaternion)
+        respond(near.body, p.body, self.arms(p, near.body, pose[0]), change, lever, p.p)
+        self.place(p, *pose)
         return load
+
+    def mobility(self, domain, near, pose, added, faces, step):
+        """How the bodies answer to pressures of the water: a `Mobility`. The rest: see `answer`, `Solids.loosen`."""
+        inverse = np.empty((len(self.bodies), 6, 6))
+        mobilities(added, self._given(pose, step), inverse)
+        return Mobility(domain, near, self._beside, self, pose[0], inverse, faces, self._units[0])
+
+    def _given(self, pose, step):
+        b = self.bodies
+        return Given(b.mass, b.inertia, pose[1], b.contact_load + b.spring_load, b.spin, *b.constraints(*step))
 
     def find(self, domain, near):
         """Note, after a rebuild, which of this rank's water may meet a body."""

@@ -12,6 +12,7 @@ from parsim.coupling.friction import Friction, Rubbing
 from parsim.coupling.openings import Openings
 from parsim.coupling.pull import Pull
 from parsim.coupling.samples import BodySamples
+from parsim.coupling.sides import Faces, wet
 from parsim.fluid.friction import slip_of
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
@@ -30,6 +31,7 @@ class Solids:
         self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
         self.samples.seen = ~buried(self.bodies, self.samples)
         self.films = Films(case, self.bodies, self.samples, lattice)
+        self._faces = Faces(self.samples, lattice)
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
         self.pull = Pull(case)
@@ -120,14 +122,43 @@ class Solids:
 
     def push(self, flow, reaction, time, dt):
         """Give the bodies, and their samples, the accelerations that the water's load gives them; see `Scheme`."""
+        pose, load, rims, inertia = self._found(flow, reaction, time, dt)
+        self.films.keep(*rims)
+        step = (time, dt)
+        self._load = self.samples.answer(flow.particles, flow.near, pose, load, inertia, reaction[1], step, flow.gravity)
+
+    def sides(self, flow, weight, dt):
+        """The `Sides` of the bodies at the middle of the step, whose wetness is noted in the field `n` of samples."""
+        p, near = flow.particles, flow.near
+        sides = self._faces.at(p, self.bodies.drifted(0.5 * dt)[1])
+        wet(near.body, near.lists, p.place, weight, sides.area, p.n)
+        return sides
+
+    def loosen(self, flow, reaction, faces, time, dt):
+        """Give the bodies the accelerations that they have without the water's pressures; what these add: `Mobility`.
+
+        `reaction` is as in `push`, without them; `faces`: see `Mobility`. None where nothing gives way.
+        """
+        pose, load, _, inertia = self._found(flow, reaction, time, dt)
+        step = (time, dt)
+        self.samples.answer(flow.particles, flow.near, pose, load, inertia, reaction[1], step, flow.gravity)
+        return self.samples.mobility(flow.domain, flow.near, pose, inertia, faces, step) or None
+
+    def give_way(self, flow, change, dt):
+        """Change the accelerations of the bodies, and of their samples, by `change` (bodies, 6), m/s2 and 1/s2."""
+        self.bodies.acceleration += change[:, :3]
+        self.bodies.angular_acceleration += change[:, 3:]
+        self.samples.place(flow.particles, *self.bodies.drifted(0.5 * dt))
+
+    def _found(self, flow, reaction, time, dt):
+        """Pose at the middle of the step, loads, rims of the films, inertia that the water adds: see `samples.loads`."""
         domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
-        force, lever, response = reaction
+        force, _, response = reaction
         plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)
         added = self.films.loads(domain, near, plate, *pose, flow.gravity)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
-        self.films.keep(*rims)
         load += self._turn(flow, dt)
-        self._load = self.samples.answer(flow.particles, near, pose, load, inertia, lever, (time, dt), flow.gravity)
+        return pose, load, rims, inertia
 
     def driven(self, time):
         """Whether the gate moves at `time`, s."""

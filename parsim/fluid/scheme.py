@@ -54,6 +54,18 @@ class Solids(Protocol):
         The accelerations that follow, and the pressures with them, are then those of the samples.
         """
 
+    def sides(self, flow, weight, dt):
+        """What bodies show of their surface in this step, a `sides.Sides`; the field `n` of samples: how wet they are."""
+
+    def loosen(self, flow, reaction, faces, time, dt):
+        """The same without the pressures of the water: how what they push gives way, a `Mobility`, None if nothing.
+
+        `reaction` is that without them; faces: what `sides` gave, its weight, how wet samples are.
+        """
+
+    def give_way(self, flow, change, dt):
+        """Change the accelerations of bodies and of their samples by `change` (bodies, 6), m/s2 and 1/s2."""
+
     def driven(self, time):
         """Whether anything solid is driven from outside at `time`, s."""
 

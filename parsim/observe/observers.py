@@ -20,6 +20,7 @@ from parsim.observe.observer import table
 from parsim.observe.openings import Openings
 from parsim.observe.peaks import Peaks
 from parsim.observe.probes import Probes
+from parsim.observe.solver import Solver
 from parsim.observe.velocities import Velocities
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 # what is seen at a time; what has left is told at once
 OBSERVERS = (
     Energy, Counts, Bodies, Loads, Gauges, Levels, Front, Probes, Forces, Fluxes, Velocities, Channel, Openings, Ice,
-    Peaks,
+    Peaks, Solver,
 )  # fmt: skip
 # unit of every column of every series, by names
 TABLES = {observer.name: table(observer) for observer in (*OBSERVERS, Lost)}

@@ -161,6 +161,9 @@ def exercise(part: str) -> None:
     else:
         rubbing = [_CASE["water"] | {"friction": {"kind": kind}, "eddies": {"kind": "mixing_length"}} for kind in RUBS]
         cases = [_CASE | {"water": rubbing[0]}, _CASE | _PERIODIC | {"water": rubbing[1]}]
+        rubs = {"friction": {"kind": RUBS[0]}}
+        implicit = [{"kind": "simps", "weight": name} for name in ("wendland_c2", "mps")]
+        cases += [_CASE | {"water": _CASE["water"] | rubs | {"scheme": scheme}} for scheme in implicit]
     for data in cases:
         case = parse(data)
         simulation = Simulation(case, Comm())

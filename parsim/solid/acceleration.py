@@ -85,6 +85,50 @@ def accelerate_bodies(load, added, bodies, gravity, acceleration, angular, chang
 
 
 @kernel
+def mobilities(added, bodies, out):
+    """What a load of one, N or N m, changes of the accelerations of `accelerate_bodies`: out (nb, 6, 6), symmetric.
+
+    Components that are given do not change, nor what is along a rod. `added` as there.
+    """
+    mass, inertia, quaternion, _, _, free, _, rod, _ = bodies
+    m, rhs, along, unit = np.zeros((6, 6)), np.zeros(6), np.zeros(6), np.eye(3)
+    for b in range(mass.size):
+        q = quaternion[b]
+        turn, own = matrix((q[0], q[1], q[2], q[3])), (inertia[b, 0], inertia[b, 1], inertia[b, 2])
+        k = 0
+        for a in range(6):
+            for c in range(a, 6):
+                m[a, c] = m[c, a] = added[b, k]
+                k += 1
+        for a in range(3):
+            m[a, a] += mass[b]
+            x, y, z = scaled(turn, own, unit[a, 0], unit[a, 1], unit[a, 2])
+            m[3, 3 + a], m[4, 3 + a], m[5, 3 + a] = m[3, 3 + a] + x, m[4, 3 + a] + y, m[5, 3 + a] + z
+        for a in range(6):
+            if free[b, a] == 0.0:
+                m[a, :] = 0.0
+                m[:, a] = 0.0
+                m[a, a] = 1.0
+        factor(m)
+        tied, soft = rod[b, 0] != 0.0 or rod[b, 1] != 0.0 or rod[b, 2] != 0.0, 0.0
+        if tied:
+            for a in range(6):
+                along[a] = rod[b, a] * free[b, a] if a < 3 else 0.0
+            solve(m, along)
+            for a in range(3):
+                soft += rod[b, a] * along[a]
+        for c in range(6):
+            rhs[:] = 0.0
+            rhs[c] = free[b, c]
+            solve(m, rhs)
+            if tied:
+                off = rod[b, 0] * rhs[0] + rod[b, 1] * rhs[1] + rod[b, 2] * rhs[2]
+                for a in range(6):
+                    rhs[a] -= off / soft * along[a]
+            out[b, :, c] = rhs
+
+
+@kernel
 def factor(m):
     """The Cholesky factor of m (n, n), symmetric and positive, in its place, below the diagonal."""
     n = len(m)
