@@ -1,0 +1,42 @@
+"""What a case may say of the scheme of smoothed particles in arbitrary Lagrangian-Eulerian form."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from parsim.case.types import Real, Switch, Table
+from parsim.fluid.sphale.fields import FIELDS
+
+
+class Settings(Table):
+    """Smoothed particles with Riemann fluxes between them (Robb et al. 2016)."""
+
+    WET: ClassVar[bool] = True
+
+    kind: Literal["sphale"] = Field(description="smoothed particles with Riemann fluxes between them")
+    sound: Real = Field(10.0, ge=5, le=1000, description="speed of sound over the largest expected speed")
+    weight: Literal["wendland_c4", "wendland_c2"] = Field(
+        "wendland_c2", description="weight of the sums over neighbours: the slope of this kernel"
+    )
+    support: Real = Field(3.0, ge=2.1, le=4, description="radius of the support over the spacing")
+    stages: Literal[2, 3] = Field(2, description="stages of a step in time")
+    shifting: Switch = Field(True, description="whether particles leave the water's velocity to stay evenly spread")
+
+    @property
+    def fields(self):
+        """The fields of particles, those of every scheme with them."""
+        return FIELDS
+
+    def sound_speed(self, speed):
+        """Speed of sound, m/s, where `speed`, m/s, is the largest expected one."""
+        return self.sound * speed
+
+    def doubts(self):
+        """Nothing to doubt."""
+        return []
+
+    def scheme(self, case, timers=None):
+        """The scheme that moves the water of a case."""
+        from parsim.fluid.sphale.scheme import SPHALE  # brings numba along, whose settings a run makes first
+
+        return SPHALE(case, timers)
