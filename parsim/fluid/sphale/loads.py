@@ -10,7 +10,7 @@ from parsim.machine.jit import prange, rows
 
 
 @rows
-def reaction(at, lists, state, slope, solid, constants, weight, out):
+def reaction(at, lists, state, slope, solid, weight, constants, out):
     """Forces of the water on the samples `at`, N: rows of out.force (Robb et al. 2016, eqs 4 and 5).
 
     They are linear in the sample's acceleration a: `force` changes by -`response` da, a symmetric matrix that is never
@@ -29,6 +29,7 @@ def reaction(at, lists, state, slope, solid, constants, weight, out):
     nx, ny, nz = solid.normal
     gx, gy, gz, over = constants.gx, constants.gy, constants.gz, constants.over * constants.volume
     rho, modulus, impedance = constants.density, constants.modulus, constants.impedance
+    least, ease = constants.least, constants.ease
     force, lever, response = out.force, out.lever, out.response
     for row in prange(at.size):
         i = at[row]
@@ -50,7 +51,7 @@ def reaction(at, lists, state, slope, solid, constants, weight, out):
             along_w = wx[j] * dx + wy[j] * dy + wz[j] * dz
             toward, meeting = hx * dx + hy * dy + hz * dz, (ui - u[j], vi - v[j], wi - w[j])
             way, slopes = (dx, dy, dz), (along_u, along_v, along_w)
-            f = 2.0 * g * wall_pressure(p[j], way, toward, face, meeting, slopes, (rho, modulus, impedance))
+            f = 2.0 * g * wall_pressure(p[j], way, toward, face, meeting, slopes, (rho, modulus, impedance, least, ease))
             sx += f * dx
             sy += f * dy
             sz += f * dz

@@ -8,6 +8,8 @@ import math
 
 from parsim.machine.jit import kernel
 
+_OF_WALLS = 0.3  # of the least share of the jump between particles of water: more brakes bodies that turn
+
 
 @kernel
 def minmod(a, b):
@@ -21,10 +23,10 @@ def interface(left, right, water):
 
     `water`: density, kg/m3, modulus rho0 c0^2, Pa, impedance rho0 c0, kg/(m2 s), at no pressure. The solver in primitive variables (Toro 2009, section 9.3), with the impedance of the mean pressure.
     """
-    (pl, nl), (pr, nr), (density, modulus, impedance) = left, right, water
+    (pl, nl), (pr, nr), (density, modulus, impedance, least, ease) = left, right, water
     mean = 0.5 * (pl + pr)
     z = impedance * (1.0 + 4.0 * mean / modulus)
-    p = mean + 0.5 * z * (nl - nr)
+    p = mean + 0.5 * z * (nl - nr) * min(max(ease * (nl - nr), least), 1.0)
     x = p / modulus
     return p, 0.5 * (nl + nr) + 0.5 * (pl - pr) / z, density * (1.0 + x - 3.0 * x * x)
 
@@ -38,11 +40,12 @@ def wall_pressure(p, way, toward, normal, meeting, slope, water):
     times `way`, m/s. The velocity of the water is reconstructed at the wall, as if the wall mirrored it. A sample whose
     face looks another way only bears the pressure that is there.
     """
-    density, modulus, impedance = water
+    density, modulus, impedance, least, ease = water
     away = -(way[0] * normal[0] + way[1] * normal[1] + way[2] * normal[2])
     away /= math.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
     across = meeting[0] * normal[0] + meeting[1] * normal[1] + meeting[2] * normal[2]
     along = slope[0] * normal[0] + slope[1] * normal[1] + slope[2] * normal[2]
     z = impedance * (1.0 + 4.0 * p / modulus)
     jump = across - minmod(across, along - across)
-    return p + 0.5 * density * toward + min(2.0 * max(away, 0.0), 1.0) * z * jump
+    z *= min(2.0 * max(away, 0.0), 1.0) * min(max(ease * jump, _OF_WALLS * least), 1.0)
+    return p + 0.5 * density * toward + z * jump

@@ -35,7 +35,8 @@ class SPHALE:
         self.stiffness = self.sound**2 * water.density / 7.0
         self.mass = water.density * lattice.volume
         self.cfl, self.shifting, self._stages = case.run.cfl, choice.shifting, _STAGES[choice.stages]
-        self._drag = 2.0 * (lattice.dimensions + 2.0) * water.viscosity
+        self._drag = 2.0 * (lattice.dimensions + 2.0) * water.viscosity * water.density
+        self._least, self._even = choice.dissipation, choice.evening
         self._over = lattice.dimensions / (lattice.number * lattice.volume)
         self._endless = np.isfinite(period(case))
 
@@ -44,7 +45,7 @@ class SPHALE:
         spacing = self.lattice.spacing
         limits = [self.cfl * spacing / (self.sound + speed)]
         if self._drag > 0.0:
-            limits.append(1.0 / (self._drag * self._over * self.lattice.slopes * self.lattice.volume))
+            limits.append(self.density / (self._drag * self._over * self.lattice.slopes * self.lattice.volume))
         if acceleration > 0.0:
             limits.append(math.sqrt(2.0 * spacing / acceleration))
         return min(limits)
@@ -165,6 +166,9 @@ class SPHALE:
             density * self.sound**2,
             density * self.sound,
             self._drag,
+            self._least,
+            3.0 / self.sound,
+            self._even * self.sound,
             *gravity,
             *head,
             0.5 * lattice.radius**2 / lattice.spacing,

@@ -1,10 +1,10 @@
 """What a case may say of the scheme of smoothed particles in arbitrary Lagrangian-Eulerian form."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from parsim.case.types import Real, Switch, Table
+from parsim.case.types import Real, Share, Switch, Table
 from parsim.fluid.sphale.fields import FIELDS
 
 
@@ -19,7 +19,13 @@ class Settings(Table):
         "wendland_c2", description="weight of the sums over neighbours: the slope of this kernel"
     )
     support: Real = Field(3.0, ge=2.1, le=4, description="radius of the support over the spacing")
-    stages: Literal[2, 3] = Field(2, description="stages of a step in time")
+    stages: Literal[2, 3] = Field(3, description="stages of a step in time; of two, sound grows at a cfl near 1")
+    dissipation: Share = Field(
+        0.1, description="least share of the jump of pressure by the speed of approach, which takes more of it by itself"
+    )
+    evening: Annotated[Real, Field(ge=0, le=0.2)] = Field(
+        0.05, description="how fast neighbours swap water until their volumes are even, over the speed of sound"
+    )
     shifting: Switch = Field(True, description="whether particles leave the water's velocity to stay evenly spread")
 
     @property

@@ -130,6 +130,7 @@ def fluxes(at, lists, state, slope, solid, weight, constants, out):
     ax, ay, az = solid.acceleration
     nx, ny, nz = solid.normal
     rho, modulus, impedance = constants.density, constants.modulus, constants.impedance
+    least, ease, even = constants.least, constants.ease, constants.even
     gx, gy, gz, hx, hy, hz = constants.gx, constants.gy, constants.gz, constants.hx, constants.hy, constants.hz
     over, full, stress = constants.over, constants.volume, constants.drag
     grown, gained = out.volume, out.mass
@@ -159,9 +160,11 @@ def fluxes(at, lists, state, slope, solid, weight, constants, out):
             wl = wi + 0.5 * minmod(dw, 2.0 * (wx[i] * dx + wy[i] * dy + wz[i] * dz) - dw)
             wr = w[j] - 0.5 * minmod(dw, 2.0 * (wx[j] * dx + wy[j] * dy + wz[j] * dz) - dw)
             nl, nr = ul * ex + vl * ey + wl * ez, ur * ex + vr * ey + wr * ez
-            pressure, normal, density = interface((left, nl), (right, nr), (rho, modulus, impedance))
+            pressure, normal, density = interface((left, nl), (right, nr), (rho, modulus, impedance, least, ease))
             ou, ov, ow = u[j] + sx[j], v[j] + sy[j], w[j] + sz[j]
             flux = density * (normal - 0.5 * ((u0 + ou) * ex + (v0 + ov) * ey + (w0 + ow) * ez))
+            swap = even * (omega[i] - omega[j]) / (omega[i] + omega[j])
+            flux += density * swap
             upwind = flux > 0.0
             along = normal - (nl if upwind else nr)
             f = 2.0 * g / inverse
@@ -172,6 +175,7 @@ def fluxes(at, lists, state, slope, solid, weight, constants, out):
             mx += e * ((ul if upwind else ur) + along * ex) + pressure * ex - drag * dx
             my += e * ((vl if upwind else vr) + along * ey) + pressure * ey - drag * dy
             mz += e * ((wl if upwind else wr) + along * ez) + pressure * ez - drag * dz
+            volume -= f * swap
             volume += g * ((ou - u0) * dx + (ov - v0) * dy + (ow - w0) * dz)
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[t]
@@ -185,7 +189,7 @@ def fluxes(at, lists, state, slope, solid, weight, constants, out):
             along_w = wx[i] * dx + wy[i] * dy + wz[i] * dz
             meeting = (u[j] - ui, v[j] - vi, w[j] - wi)
             way, face = (dx, dy, dz), (nx[j], ny[j], nz[j])
-            pressure = g * wall_pressure(pi, way, toward, face, meeting, (along_u, along_v, along_w), (rho, modulus, impedance))
+            pressure = g * wall_pressure(pi, way, toward, face, meeting, (along_u, along_v, along_w), (rho, modulus, impedance, least, ease))
             mx += pressure * dx
             my += pressure * dy
             mz += pressure * dz

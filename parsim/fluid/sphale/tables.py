@@ -69,6 +69,9 @@ class Constants(NamedTuple):
     modulus: float
     impedance: float
     drag: float
+    least: float
+    ease: float
+    even: float
     gx: float
     gy: float
     gz: float
