@@ -30,7 +30,7 @@ def checked(case, messages):
         bodies.gate,
         bodies.sensors,
     )
-    of_water = _water, fills.faults, friction.faults, channel.faults, openings.faults, _speed
+    of_water = _water, _scheme, fills.faults, friction.faults, channel.faults, openings.faults, _speed
     for check in (_spacing, _box, _faces, *of_water, _ramp, motion.faults, measure.faults, *of_bodies):
         faults += check(case)
     if messages or faults:
@@ -144,6 +144,11 @@ def _water(case):
     if case.water.fill and not case.water.scheme.WET:
         return ['water.scheme.kind = "none": there is water, water.fill; leave the scheme out, or the fill']
     return []
+
+
+def _scheme(case):
+    """What the scheme of the water does not know."""
+    return case.water.scheme.faults(case)
 
 
 def _divides(spacing, edge):

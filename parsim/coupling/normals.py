@@ -12,7 +12,7 @@ from parsim.solid.shapes.kernels import distance
 
 
 class Normals:
-    """Of the samples of walls, gate and bodies: of the nearest face; none in corners, where the walls of two sides meet.
+    """Of the samples of walls, gate and bodies: of the nearest face; none in corners, where two walls meet.
 
     low, high (3,), m: where walls stand along each axis, infinite where none does.
     """

@@ -40,6 +40,7 @@ _PERIODIC: dict[str, Any] = {
     "output": {"sensors": [{"name": "one", "x": 0.05}]},
 }
 RUBS = "wall_law", "no_slip"
+OF_SPHALE = "wendland_c2", "wendland_c4"
 
 
 def prepare() -> None:
@@ -161,6 +162,9 @@ def exercise(part: str) -> None:
     else:
         rubbing = [_CASE["water"] | {"friction": {"kind": kind}, "eddies": {"kind": "mixing_length"}} for kind in RUBS]
         cases = [_CASE | {"water": rubbing[0]}, _CASE | _PERIODIC | {"water": rubbing[1]}]
+        cases += [
+            _CASE | {"water": _CASE["water"] | {"scheme": {"kind": "sphale", "weight": name}}} for name in OF_SPHALE
+        ]
     for data in cases:
         case = parse(data)
         simulation = Simulation(case, Comm())

@@ -18,5 +18,8 @@ FIELDS = (
     *(Field(name, "f8", "m/s", False, "velocity of the particle over that of the water: shifting") for name in SHIFT),
     *(Field(name, "f8", "Pa/m", False, "slope of the pressure less its hydrostatic part") for name in SLOPES[0]),
     *(Field(name, "f8", "1/s", False, "slope of a component of the velocity") for name in ALL_SLOPES[3:]),
-    *(Field(name, "f8", "-", False, "unit normal, of water at its surface outward, of a sample inward") for name in NORMAL),
+    *(
+        Field(name, "f8", "-", False, "unit normal, of water at its surface outward, of a sample inward")
+        for name in NORMAL
+    ),
 )

@@ -1,4 +1,4 @@
-"""What the water does to the samples of what is solid: the fluxes that its particles get of them, with their signs turned."""
+"""What the water does to samples of what is solid: the fluxes that it gets of them, with their signs turned."""
 
 import math
 
@@ -51,7 +51,11 @@ def reaction(at, lists, state, slope, solid, weight, constants, out):
             along_w = wx[j] * dx + wy[j] * dy + wz[j] * dz
             toward, meeting = hx * dx + hy * dy + hz * dz, (ui - u[j], vi - v[j], wi - w[j])
             way, slopes = (dx, dy, dz), (along_u, along_v, along_w)
-            f = 2.0 * g * wall_pressure(p[j], way, toward, face, meeting, slopes, (rho, modulus, impedance, least, ease))
+            f = (
+                2.0
+                * g
+                * wall_pressure(p[j], way, toward, face, meeting, slopes, (rho, modulus, impedance, least, ease))
+            )
             sx += f * dx
             sy += f * dy
             sz += f * dz

@@ -1,7 +1,8 @@
 """States at the interface of two particles, and of water and what is solid: approximate solutions of Riemann problems.
 
-Both take the equation of state of Tait (Mellado 2021, eq. 5.17) to the second order in p over rho0 c0^2, whose square is
-at most 1e-4 of the model's water.
+Both take the equation of state of Tait (Mellado 2021, eq. 5.17) to the second order in p over rho0 c0^2, which is at
+most some hundredths in the model's water. Of the jump of pressure that comes of the speed of approach they take the
+share 3 v / c0 (Zhang, Hu & Adams 2017) or a least one: all of it brakes what strains, and bodies that turn.
 """
 
 import math
@@ -21,7 +22,9 @@ def minmod(a, b):
 def interface(left, right, water):
     """Pressure, Pa, velocity along the pair, m/s, and density, kg/m3, between `left` and `right`, (p, velocity) each.
 
-    `water`: density, kg/m3, modulus rho0 c0^2, Pa, impedance rho0 c0, kg/(m2 s), at no pressure. The solver in primitive variables (Toro 2009, section 9.3), with the impedance of the mean pressure.
+    The solver in primitive variables (Toro 2009, section 9.3), with the impedance of the mean pressure. `water`:
+    density, kg/m3, modulus rho0 c0^2, Pa, and impedance rho0 c0, kg/(m2 s), at no pressure; of the jump of pressure the
+    least share, and by how much that grows with the speed of approach, s/m.
     """
     (pl, nl), (pr, nr), (density, modulus, impedance, least, ease) = left, right, water
     mean = 0.5 * (pl + pr)

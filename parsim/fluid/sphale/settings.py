@@ -7,6 +7,8 @@ from pydantic import Field
 from parsim.case.types import Real, Share, Switch, Table
 from parsim.fluid.sphale.fields import FIELDS
 
+_LARGEST_CFL = 1.0
+
 
 class Settings(Table):
     """Smoothed particles with Riemann fluxes between them (Robb et al. 2016)."""
@@ -21,7 +23,8 @@ class Settings(Table):
     support: Real = Field(3.0, ge=2.1, le=4, description="radius of the support over the spacing")
     stages: Literal[2, 3] = Field(3, description="stages of a step in time; of two, sound grows at a cfl near 1")
     dissipation: Share = Field(
-        0.1, description="least share of the jump of pressure by the speed of approach, which takes more of it by itself"
+        0.1,
+        description="least share of the jump of pressure by the speed of approach, which takes more of it by itself",
     )
     evening: Annotated[Real, Field(ge=0, le=0.2)] = Field(
         0.05, description="how fast neighbours swap water until their volumes are even, over the speed of sound"
@@ -36,6 +39,30 @@ class Settings(Table):
     def sound_speed(self, speed):
         """Speed of sound, m/s, where `speed`, m/s, is the largest expected one."""
         return self.sound * speed
+
+    def faults(self, case):
+        """What of a completed case this scheme does not know yet: messages."""
+        faces = case.box.faces
+        given = {
+            "water.friction": case.water.friction is not None,
+            "water.eddies": case.water.eddies is not None,
+            "channel": case.channel is not None,
+            "motion": case.motion is not None,
+        }
+        for name in type(faces).model_fields:
+            side = getattr(faces, name)
+            given[f'box.faces.{name} = "{side.kind}"'] = side.kind in ("inlet", "outlet")
+            given[f"box.faces.{name}.velocity"] = any(getattr(side, "velocity", None) or ())
+        out = [
+            f'{key}: is not in water.scheme.kind = "sphale"; leave it out, or use "wcmps"'
+            for key, here in given.items()
+            if here
+        ]
+        if case.run.cfl > _LARGEST_CFL:
+            out.append(
+                f'run.cfl = {case.run.cfl!r}: must be at most {_LARGEST_CFL!r} with water.scheme.kind = "sphale"'
+            )
+        return out
 
     def doubts(self):
         """Nothing to doubt."""

@@ -1,4 +1,4 @@
-"""Sweeps of the SPH-ALE scheme over neighbour lists, in gather form: particle i sums over its list and writes only to i.
+"""Sweeps of SPH-ALE over neighbour lists, in gather form: particle i sums over its list and writes only to i.
 
 Both particles of a pair find the same state between them, so that what one loses the other gains. Pairs of water and
 samples of what is solid have no mass flux.
@@ -111,11 +111,12 @@ def slopes(at, lists, state, scale, weight, constants, out, around):
 
 @rows
 def fluxes(at, lists, state, slope, solid, weight, constants, out):
-    """Rates of volume, mass and momentum of the particles `at` (Vila 1999; Robb et al. 2016, eqs 1 and 3, signs turned).
+    """Rates of volume, mass and momentum of the particles `at` (Vila 1999; Robb et al. 2016, eqs 1 and 3, sign turned).
 
-    Particles move at the velocity of the water and `state.frame`; what is reconstructed is p less its hydrostatic part and
-    the velocity, by minmod. Volume changes at samples count twice, as the pressure there does: the work of both is then
-    the same. Viscosity in the form that conserves angular momentum, between particles of water only.
+    Particles move at the velocity of the water and `state.frame`; what is reconstructed, by minmod, is the velocity and
+    p less its hydrostatic part. Volume changes at samples count twice, as the pressure there does: the work of both is
+    then the same. Neighbours swap water until their volumes are even, which would else drift apart by the fluxes.
+    Viscosity in the form that conserves angular momentum, between particles of water only.
     """
     start, middle, end, index = lists
     x, y, z = state.place
@@ -189,7 +190,9 @@ def fluxes(at, lists, state, slope, solid, weight, constants, out):
             along_w = wx[i] * dx + wy[i] * dy + wz[i] * dz
             meeting = (u[j] - ui, v[j] - vi, w[j] - wi)
             way, face = (dx, dy, dz), (nx[j], ny[j], nz[j])
-            pressure = g * wall_pressure(pi, way, toward, face, meeting, (along_u, along_v, along_w), (rho, modulus, impedance, least, ease))
+            pressure = g * wall_pressure(
+                pi, way, toward, face, meeting, (along_u, along_v, along_w), (rho, modulus, impedance, least, ease)
+            )
             mx += pressure * dx
             my += pressure * dy
             mz += pressure * dz

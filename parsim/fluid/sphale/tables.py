@@ -60,8 +60,9 @@ class Reaction(NamedTuple):
 
 class Constants(NamedTuple):
     """over: of W / r2 to the slope of the kernel, 1/m^d; volume of a full sample, m^d; density, kg/m3; modulus
-    rho0 c0^2, Pa; impedance rho0 c0, kg/(m2 s); drag 2 (d + 2) mu, Pa s; gx, gy, gz: gravity, m/s2; hx, hy, hz: slope
-    of the hydrostatic pressure, Pa/m; spread, m, of the shift; own, whole: see `Lattice`; flat: 1 in 2D, else 0."""
+    rho0 c0^2, Pa; impedance rho0 c0, kg/(m2 s); drag 2 (d + 2) mu, Pa s; least, ease, s/m: see `riemann.interface`;
+    even, m/s: how fast water is swapped; gx, gy, gz: gravity, m/s2; hx, hy, hz: slope of the hydrostatic pressure,
+    Pa/m; spread, m, of the shift; own, whole: see `Lattice`; flat: 1 in 2D, else 0."""
 
     over: float
     volume: float

@@ -1,7 +1,5 @@
 """What a stage does to each particle by itself: state, and the sums of its rates."""
 
-import numpy as np
-
 from parsim.machine.jit import each, kernel, prange
 from parsim.particles.state import FLUID
 
@@ -19,7 +17,7 @@ def press(kind, omega, m, state, p):
 
 @each
 def advance(at, before, rates, frame, step, kinematics, amounts):
-    """Place, velocity, volume and mass of the particles `at` a stage on from `before` (8, n), by rates at the state now.
+    """Place, velocity, volume and mass of the particles `at` a stage on from `before` (8, n), by the rates now.
 
     `step`: its length, s; gravity, m/s2; share of velocity kept. `amounts`: omega and m.
     """
@@ -57,4 +55,3 @@ def elastic(at, omega, m, state, out):
         s = m[i] / (density * omega[i])
         s2 = s * s
         out[row] = m[i] * sound2 / 7.0 * (s2 * s2 * s2 / 6.0 + 1.0 / s - 7.0 / 6.0)
-
