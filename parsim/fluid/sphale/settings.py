@@ -8,6 +8,7 @@ from parsim.case.types import Real, Share, Switch, Table
 from parsim.fluid.sphale.fields import FIELDS
 
 _LARGEST_CFL = 1.0
+_LIGHTEST = 0.6  # spacings of water that a body weighs, from which it floats still; at 0.4 it shakes (2D, 0.5 s)
 
 
 class Settings(Table):
@@ -62,7 +63,7 @@ class Settings(Table):
             out.append(
                 f'run.cfl = {case.run.cfl!r}: must be at most {_LARGEST_CFL!r} with water.scheme.kind = "sphale"'
             )
-        return out
+        return out + [f"bodies.{body.name}: {text}" for body in case.bodies for text in _too_light(case, body)]
 
     def doubts(self):
         """Nothing to doubt."""
@@ -73,3 +74,16 @@ class Settings(Table):
         from parsim.fluid.sphale.scheme import SPHALE  # brings numba along, whose settings a run makes first
 
         return SPHALE(case, timers)
+
+
+def _too_light(case, body):
+    """Whether water would shake a body: a message, or nothing."""
+    if body.fixed or (body.density is None) == (body.mass is None):
+        return
+    side = 2.0 * body.shape.thinnest(case.dimensions == 2)
+    density, least = case.density_of(body), _LIGHTEST * case.water.density * case.spacing
+    if density * side < (1.0 - 1e-9) * least:
+        yield (
+            f"density {density:.6g} kg/m3 times its thinnest side, {side:.6g} m: must be at least {least:.6g} kg/m2, "
+            f'{_LIGHTEST:g} spacings of water, with water.scheme.kind = "sphale"'
+        )
