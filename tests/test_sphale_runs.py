@@ -117,8 +117,18 @@ REFUSED = {
     "side": ({"box": {"faces": {"z_min": {"kind": "wall", "velocity": [0.1, 0.0, 0.0]}}}}, "z_min.velocity: is not in"),
     "channel": ({"channel": {"discharge": 0.01}}, "channel: is not in"),
     "light body": (
-        {"materials": WOOD, "bodies": [{"name": "box", "shape": {"size": [0.05, 1.0, 0.03]}, "density": 190.0,
-                                        "material": "wood", "position": [0.05, 0.5, "float"]}]},
+        {
+            "materials": WOOD,
+            "bodies": [
+                {
+                    "name": "box",
+                    "shape": {"size": [0.05, 1.0, 0.03]},
+                    "density": 190.0,
+                    "material": "wood",
+                    "position": [0.05, 0.5, "float"],
+                }
+            ],
+        },
         "bodies.box: density 190 kg/m3 times its thinnest side, 0.03 m: must be at least 6 kg/m2",
     ),
     "step": ({"run": {"cfl": 1.2}}, "run.cfl = 1.2: must be at most 1.0"),
