@@ -58,8 +58,7 @@ def _drawn(dice):
         "dimensions": 2 if flat else 3, "spacing": 0.01, "box": {"max": [0.4, width, 0.2], "faces": faces},
         "water": rubbing | {"fill": dice.choice(([fill], [fill], [])), "speed": 1.5,
                   "disorder": dice.choice((0.0, 0.1)),
-                  "scheme": {"weight": dice.choice(("wendland_c4", "wendland_c2", "mps")),
-                             "shifting": dice.random() < 0.8}},
+                  "scheme": _scheme(dice, rubbing)},
         "materials": {"wood": {"young": 1e8, "poisson": 0.3, "friction": 0.4, "restitution": 0.5}},
         "run": {"until": 1.0, "settle": dice.choice((0.0, 0.1))},
         "bodies": [_block(dice, number, width) for number in range(dice.choice((0, 0, 1, 2, 3, 5, 80)))],
@@ -73,13 +72,21 @@ def _drawn(dice):
     return case
 
 
+def _scheme(dice, rubbing):
+    """One of the schemes of the water that know such friction and eddies."""
+    given = {"weight": dice.choice(("wendland_c4", "wendland_c2")), "shifting": dice.random() < 0.8}
+    if not rubbing and dice.random() < 0.7:
+        return given | {"kind": "sphale", "stages": dice.choice((2, 3))}
+    return given | ({"weight": "mps"} if dice.random() < 0.3 else {})
+
+
 def _block(dice, number, width):
     """A block in a row of them that may touch, stand alone, lie under water or be held."""
     size = 0.015
     row, at = divmod(number, 10)
     place = [0.02 + at * dice.choice((size, size, 0.018)), 0.5 * width, 0.01 + 0.02 * row + dice.choice((0.0, -0.0021))]
     return {"name": f"b{number}", "shape": {"size": [size, 1.0 if width == 1.0 else 0.04, size]},
-            "density": dice.choice((300.0, 2000.0)), "position": place, "material": "wood",
+            "density": dice.choice((450.0, 2000.0)), "position": place, "material": "wood",
             "angles": [0.0, dice.choice((0.0, 0.0, 20.0)), 0.0],
             **dice.choice(({}, {}, {"fixed": True}, {"released": 0.5}))}  # fmt: skip
 
@@ -89,6 +96,7 @@ def test_no_case_drawn_at_random_compiles_anything():
     cases = [drawn(dice) for _ in range(DRAWN)]
     bodies = [len(case["bodies"]) for case in cases]
     assert {0, 1, 2} <= set(bodies) and max(bodies) > 2 and any("gate" in case for case in cases)
+    assert any(case["water"]["scheme"].get("kind") == "sphale" and case["bodies"] for case in cases)
     assert [names for names in compiled(cases) if names] == []
 
 

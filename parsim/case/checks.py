@@ -147,7 +147,7 @@ def _water(case):
 
 
 def _scheme(case):
-    """Its scheme can do what a case asks for."""
+    """What the scheme of the water does not know."""
     return case.water.scheme.faults(case)
 
 

@@ -9,6 +9,7 @@ from parsim.coupling.buried import buried
 from parsim.coupling.depths import Columns
 from parsim.coupling.films import Films
 from parsim.coupling.friction import Friction, Rubbing
+from parsim.coupling.normals import Normals
 from parsim.coupling.openings import Openings
 from parsim.coupling.pull import Pull
 from parsim.coupling.samples import BodySamples
@@ -42,6 +43,7 @@ class Solids:
         self._columns = Columns(case, self.bodies) if case.water.eddies is not None else None
         self.openings = Openings(case, layers, self.bodies)
         self._gate_samples = GateSamples(case, self.gate, layers) if self.gate else None
+        self._normals = Normals(case, self.bodies, self.samples)
         self._wet = case.water.scheme.WET
         self._load, self._felt = np.zeros((2, len(self.bodies), 6))  # of the water, and of a box that turns
 
@@ -84,6 +86,10 @@ class Solids:
         """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""
         self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
         self.openings.place(flow.particles, ahead)
+
+    def normals(self, flow, out):
+        """Write to `out`, Vectors of the particles, the unit normals of all samples into the water."""
+        self._normals.place(flow.particles, out)
 
     def hold(self, flow, at_rest):
         """Give the water that goes out the pressure that is there; `at_rest`: see `Scheme`."""

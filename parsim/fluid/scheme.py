@@ -30,6 +30,9 @@ class Solids(Protocol):
     def place(self, flow, time, ahead):
         """Bring the samples of all that is solid to where it is at time + ahead, s."""
 
+    def normals(self, flow, out):
+        """Write to `out`, Vectors of the particles, the unit normals of all samples into the water."""
+
     def hold(self, flow, at_rest):
         """Give water beyond an outlet, at the half step, the pressure that is there by the scheme's `at_rest`."""
 
@@ -105,6 +108,9 @@ class Scheme(Protocol):
 
     def compression(self, p, at):
         """Density of the particles `at` over that of the water at no pressure, (n,)."""
+
+    def shares(self, p, at):
+        """Mass of the particles `at` over `mass`, (n,)."""
 
     def elastic(self, p, at):
         """Elastic energy of the particles `at`, J, (n,)."""

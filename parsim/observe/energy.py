@@ -42,6 +42,7 @@ class Energy:
         # nothing falls along an axis that repeats
         gravity = tuple(np.where(np.isinf(self._period), gravity_at(self._case, s.time), 0.0).tolist())
         energies(at, p.kinematics, s.scheme.mass, gravity, out)
+        out[:, :2] *= s.scheme.shares(p, at)[:, None]
         out[:, 2] = s.scheme.elastic(p, at)
         b, c = s.bodies, s.contacts
         parts = [

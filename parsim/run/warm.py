@@ -40,6 +40,7 @@ _PERIODIC: dict[str, Any] = {
     "output": {"sensors": [{"name": "one", "x": 0.05}]},
 }
 RUBS = "wall_law", "no_slip"
+OF_SPHALE = "wendland_c2", "wendland_c4"
 
 
 def prepare() -> None:
@@ -164,6 +165,8 @@ def exercise(part: str) -> None:
         rubs = {"friction": {"kind": RUBS[0]}}
         implicit = [{"kind": "simps", "weight": name} for name in ("wendland_c2", "mps")]
         cases += [_CASE | {"water": _CASE["water"] | rubs | {"scheme": scheme}} for scheme in implicit]
+        riemann = [{"kind": "sphale", "weight": name} for name in OF_SPHALE]
+        cases += [_CASE | {"water": _CASE["water"] | {"scheme": scheme}} for scheme in riemann]
     for data in cases:
         case = parse(data)
         simulation = Simulation(case, Comm())

@@ -48,6 +48,10 @@ class Dry:
         """Of nothing, (0,)."""
         return np.ones(at.size)
 
+    def shares(self, p, at):
+        """Of nothing, (0,)."""
+        return np.ones(at.size)
+
     def elastic(self, p, at):
         """Of nothing, (0,)."""
         return np.zeros(at.size)

@@ -26,6 +26,10 @@ class Settings(Table):
         """Nothing is too fast."""
         return math.inf
 
+    def faults(self, case):
+        """Nothing of a completed case is unknown to it."""
+        return []
+
     def doubts(self):
         """Nothing to doubt."""
         return []

@@ -89,6 +89,10 @@ class WCMPS:
         """Density of the particles `at` over that of the water at no pressure, (n,)."""
         return p.n[at] / self.lattice.number
 
+    def shares(self, p, at):
+        """Mass of the particles `at` over `mass`: all have it, (n,)."""
+        return np.ones(at.size)
+
     def elastic(self, p, at):
         """Elastic energy of the particles `at`, J, (n,)."""
         out = np.empty(at.size)
@@ -168,9 +172,8 @@ class WCMPS:
     def _momentum(self, p, near, at, dt):
         forces, around = self._forces(dt), tables.Around(p.c, p.vectors(NORMAL), p.vectors(VISCOUS))
         with self.timers("momentum"):
-            sweeps.momentum(
-                at, near.lists, p.kinematics, _pressures(p), self.lattice.weight, forces, p.acceleration, around
-            )
+            given = at, near.lists, p.kinematics, _pressures(p), self.lattice.weight
+            sweeps.momentum(*given, forces, p.acceleration, around)
 
     def _react(self, p, near, at, dt, rubbing):
         """Forces of the water on the samples `at`, N: (samples, 3), and how they depend on accelerations.

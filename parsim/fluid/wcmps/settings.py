@@ -39,6 +39,10 @@ class Settings(Table):
         """Speed of sound, m/s, where `speed`, m/s, is the largest expected one."""
         return self.sound * speed
 
+    def faults(self, case):
+        """Nothing of a completed case is unknown to it."""
+        return []
+
     def doubts(self):
         """What is allowed but doubtful, messages: a support with which water at rest does not stay so (2D, 1 s)."""
         if self.support >= 2.6:

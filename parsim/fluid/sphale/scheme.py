@@ -1,0 +1,200 @@
+"""SPH-ALE: volumes that exchange mass and momentum through Riemann problems (Vila 1999; Robb et al. 2016), explicit.
+
+Every stage of a step takes its fluxes at the state that the stage before has found, and goes on from the start of the
+step: of the last, at the half step, is all that is kept, so that what one particle or body gets another has lost, and
+the bodies are pushed once (Jameson, Schmidt & Turkel 1981). Two or three stages are of the second order.
+"""
+
+import math
+
+import numpy as np
+
+from parsim.fluid import shifting, surface
+from parsim.fluid.reference import Lattice
+from parsim.fluid.sphale import loads, sweeps, tables, updates
+from parsim.fluid.sphale.fields import ALL_SLOPES, FORCE, NORMAL, SHIFT, SLOPES
+from parsim.fluid.wcmps.sweeps import boundary_pressure
+from parsim.fluid.wcmps.updates import extremes, seventh_roots
+from parsim.geometry.faces import period
+from parsim.machine.timers import Timers
+from parsim.particles.state import SURFACE
+
+_STAGES = {2: (0.5, 1.0), 3: (1.0 / 3.0, 0.5, 1.0)}  # how far from the start of the step each stage goes
+
+
+class SPHALE:
+    """The scheme for one case: constants, and the sweeps in their order."""
+
+    STATE = ("x", "y", "z", "u", "v", "w", "omega", "m")  # what the halos need of the full step
+
+    def __init__(self, case, timers=None):
+        water, choice = case.water, case.water.scheme
+        self.timers = timers or Timers()
+        self.lattice = lattice = Lattice(case.dimensions, case.spacing, choice.support, choice.weight)
+        self.density, self.sound = water.density, case.sound_speed
+        self.stiffness = self.sound**2 * water.density / 7.0
+        self.mass = water.density * lattice.volume
+        self.cfl, self.shifting, self._stages = case.run.cfl, choice.shifting, _STAGES[choice.stages]
+        self._drag = 2.0 * (lattice.dimensions + 2.0) * water.viscosity * water.density
+        self._least, self._even = choice.dissipation, choice.evening
+        self._over = lattice.dimensions / (lattice.number * lattice.volume)
+        self._endless = np.isfinite(period(case))
+
+    def time_step(self, speed, acceleration=0.0):
+        """Stable time step, s, at the largest speed, m/s, and acceleration, m/s2."""
+        spacing = self.lattice.spacing
+        limits = [self.cfl * spacing / (self.sound + speed)]
+        if self._drag > 0.0:
+            limits.append(self.density / (self._drag * self._over * self.lattice.slopes * self.lattice.volume))
+        if acceleration > 0.0:
+            limits.append(math.sqrt(2.0 * spacing / acceleration))
+        return min(limits)
+
+    def at_rest(self, pressure):
+        """Fields of water at rest at pressures (n,), Pa >= 0: full volumes, mass by the inverse state."""
+        omega = np.full(len(pressure), self.lattice.volume)
+        return {"omega": omega, "m": self.density * omega * seventh_roots(pressure / self.stiffness)}
+
+    def compression(self, p, at):
+        """Density of the particles `at` over that of the water at no pressure, (n,)."""
+        return p.m[at] / (self.density * p.omega[at])
+
+    def shares(self, p, at):
+        """Mass of the particles `at` over `mass`, (n,)."""
+        return p.m[at] / self.mass
+
+    def elastic(self, p, at):
+        """Elastic energy of the particles `at`, J, (n,)."""
+        out = np.empty(at.size)
+        updates.elastic(at, p.omega, p.m, (self.density, self.sound**2), out)
+        return out
+
+    def rubbed(self, flow, solids, at):
+        """No friction, (n, 3)."""
+        return np.zeros((at.size, 3))
+
+    def extremes(self, p, near, start):
+        """Largest speed, m/s, of this rank's water, infinite when not finite, and largest distance from `start`, m."""
+        return [math.sqrt(e) for e in extremes(near.fluid, p.velocity, p.place, start)]
+
+    def step(self, flow, solids, time, dt):
+        """One step: see the module. `STATE` is left to be refreshed."""
+        p, near, domain = flow.particles, flow.near, flow.domain
+        constants = self._constants(flow.gravity)
+        with self.timers("bodies"):
+            solids.normals(flow, p.vectors(NORMAL))
+        before = np.stack([getattr(p, name)[near.fluid] for name in self.STATE])
+        reached = 0.0
+        for share in self._stages:
+            if reached > 0.0:
+                domain.refresh(*self.STATE)
+                with self.timers("bodies"):
+                    solids.place(flow, time, reached * dt)
+            self._reconstruct(domain, near, constants, reached == 0.0)
+            if share == 1.0:
+                self._push(flow, solids, constants, (time, dt))
+            self._flux(p, near, constants)
+            with self.timers("move"):
+                step = (share * dt, *flow.gravity, flow.keep if share == 1.0 else 1.0)
+                updates.advance(near.fluid, before, _rates(p), p.vectors(SHIFT), step, p.kinematics, (p.omega, p.m))
+            reached = share
+        solids.advance(flow, time, dt)
+
+    def _reconstruct(self, domain, near, constants, first):
+        """Pressures and slopes, halos with them; at the `first` stage the surface and the shift too."""
+        p, lattice = domain.particles, self.lattice
+        with self.timers("move"):
+            updates.press(p.kind, p.omega, p.m, (self.density, self.stiffness), p.p)
+        around = tables.Around(p.c, p.vectors(NORMAL), p.vectors(SHIFT))
+        with self.timers("slopes"):
+            given = near.fluid, near.lists, _state(p), p.scale, lattice.weight, constants
+            sweeps.slopes(*given, _slopes(p), around if first else _unwanted(around))
+        if not first:
+            domain.refresh(*ALL_SLOPES)
+            return
+        with self.timers("surface"):
+            bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
+            surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
+        domain.refresh(*ALL_SLOPES, *NORMAL, "surface")
+        with self.timers("shifting"):
+            self._shift(domain, near)
+
+    def _shift(self, domain, near):
+        p = domain.particles
+        at, normal, frame = near.fluid, p.vectors(NORMAL), p.vectors(SHIFT)
+        surface.mark(at, near.lists, p.place, self.lattice.weight, domain.near(SURFACE, "surface"), p.surface, normal)
+        whole = shifting.Shifting(1.0 if self.shifting else 0.0, math.inf, 0.0, 0.0, 0.0, 0.0)
+        shifting.shift(at, p.surface, normal, whole, frame, p.c)
+        domain.refresh(*SHIFT)
+
+    def _push(self, flow, solids, constants, step):
+        """Push the bodies, whose samples get their accelerations and pressures, by what the water will get of them."""
+        p, near, (time, dt) = flow.particles, flow.near, step
+        with self.timers("boundary"):
+            fall = (*flow.gravity, self.density)
+            given = near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight
+            boundary_pressure(*given, fall, p.p)
+        with self.timers("bodies"):
+            if solids.pushed():
+                solids.push(flow, self._react(p, near, near.body, constants), time, dt)
+            if solids.driven(time + 0.5 * dt):
+                solids.drive(flow, self._react(p, near, near.gate, constants), time + 0.5 * dt, dt)
+
+    def _react(self, p, near, at, constants):
+        """Forces of the water on the samples `at`, N: (samples, 3), and how they depend on accelerations.
+
+        Also `lever` (samples, 3), Pa s2/m, and `response` (samples, 6), kg: see `loads.reaction`.
+        """
+        out = tables.Reaction(np.empty((at.size, 3)), np.empty((at.size, 3)), np.empty((at.size, 6)))
+        loads.reaction(at, near.lists, _state(p), _slopes(p), _solid(p), self.lattice.weight, constants, out)
+        return out
+
+    def _flux(self, p, near, constants):
+        with self.timers("fluxes"):
+            given = _state(p), _slopes(p), _solid(p), self.lattice.weight, constants
+            sweeps.fluxes(near.fluid, near.lists, *given, _rates(p))
+
+    def _constants(self, gravity):
+        lattice, density = self.lattice, self.density
+        gravity = tuple(float(g) for g in gravity)
+        # what goes round has no head along its way
+        head = tuple(0.0 if endless else density * g for g, endless in zip(gravity, self._endless, strict=True))
+        return tables.Constants(
+            self._over,
+            lattice.volume,
+            density,
+            density * self.sound**2,
+            density * self.sound,
+            self._drag,
+            self._least,
+            3.0 / self.sound,
+            self._even * self.sound,
+            *gravity,
+            *head,
+            0.5 * lattice.radius**2 / lattice.spacing,
+            lattice.own,
+            lattice.whole,
+            float(lattice.dimensions == 2),
+        )
+
+
+def _state(p):
+    return tables.State(p.place, p.velocity, p.vectors(SHIFT), p.p, p.omega)
+
+
+def _slopes(p):
+    return tables.Slopes(*(p.vectors(names) for names in SLOPES))
+
+
+def _solid(p):
+    return tables.Solid(p.scale, p.acceleration, p.vectors(NORMAL))
+
+
+def _rates(p):
+    return tables.Rates(p.growth, p.gain, p.vectors(FORCE))
+
+
+def _unwanted(around):
+    """The same tables with room for what a later stage does not look at."""
+    spare = [np.empty_like(around.concentration) for _ in range(7)]
+    return tables.Around(spare[0], tables.Vectors(*spare[1:4]), tables.Vectors(*spare[4:]))
