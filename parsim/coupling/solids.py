@@ -1,5 +1,7 @@
 """All that is solid, as a scheme of the water sees it: placed, pushed, advanced."""
 
+import functools
+
 import numpy as np
 
 from parsim.boundary.gate import Gate, GateSamples
@@ -32,7 +34,7 @@ class Solids:
         self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
         self.samples.seen = ~buried(self.bodies, self.samples)
         self.films = Films(case, self.bodies, self.samples, lattice)
-        self._faces = Faces(self.samples, lattice)
+        self._lattice = lattice
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
         self.pull = Pull(case)
@@ -86,6 +88,10 @@ class Solids:
         """Bring the samples of gate and bodies to where these are `ahead` s after `time`."""
         self._place(flow.particles, *self.bodies.drifted(ahead), time + ahead)
         self.openings.place(flow.particles, ahead)
+
+    @functools.cached_property
+    def _faces(self):
+        return Faces(self.samples, self._lattice)
 
     def normals(self, flow, out):
         """Write to `out`, Vectors of the particles, the unit normals of all samples into the water."""

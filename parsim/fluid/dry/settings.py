@@ -34,10 +34,6 @@ class Settings(Table):
         """Nothing to doubt."""
         return []
 
-    def faults(self, case):
-        """Nothing of a case that this scheme cannot do."""
-        return []
-
     def scheme(self, case, timers=None):
         """The scheme of a case without water."""
         from parsim.fluid.dry.scheme import Dry  # brings numba along, whose settings a run makes first

@@ -64,6 +64,10 @@ class SIMPS:
         """Density of the particles `at` over that of the water at no pressure, (n,)."""
         return 1.0 + self._give * p.p[at]
 
+    def shares(self, p, at):
+        """Mass of the particles `at` over `mass`: all have it, (n,)."""
+        return np.ones(at.size)
+
     def elastic(self, p, at):
         """Elastic energy of the particles `at`, J, (n,)."""
         return 0.5 * self._give * self.lattice.volume * p.p[at] ** 2

@@ -52,10 +52,6 @@ class Settings(Table):
             "pressure scatters by 0.1 to 1 % where that is 0.01 % at 3.1; 2.7 or more is quiet"
         ]
 
-    def faults(self, case):
-        """Nothing of a case that this scheme cannot do."""
-        return []
-
     def scheme(self, case, timers=None):
         """The scheme that moves the water of a case."""
         from parsim.fluid.wcmps.scheme import WCMPS  # brings numba along, whose settings a run makes first
