@@ -103,6 +103,16 @@ def test_floes_come_in_afloat_and_nothing_is_lost():
     assert 0.0 <= wanted - s.solids.openings.passage.queues[0].given < 0.1, "as much as was asked for, to a floe"
 
 
+def test_what_is_yet_before_the_inlet_covers_no_water():
+    given = reach(begins=0.05)
+    given["water"] |= {"friction": {"kind": "wall_law", "roughness": 0.001}, "eddies": {"kind": "mixing_length"}}
+    s = simulation(given)
+    while s.bodies.gone.all():
+        s.step()
+    front = s.bodies.position[0, 0] + s.bodies.shapes[0].half[0]
+    assert -0.02 < front < 0.0 and not s.solids.depths.covered.any()
+
+
 def test_a_supply_by_discharge_begins_and_ends():
     s = simulation(reach(concentration=None, discharge=[[0.0, 0.0], [0.2, 0.02]], begins=0.1, ends=0.3))
     queue = s.solids.openings.passage.queues[0]
