@@ -147,7 +147,7 @@ def test_what_passes_the_outlet_is_led_out_level():
     given = reach(
         bodies=[block(0.44, name="out", fixed=False, position=[0.44, 0.5, "float"], velocity=[0.5, 0.0, 0.0])]
     )
-    s = simulation(given | {"ice": {}})
+    s = simulation(given | {"ice": {}, "run": {"until": 1.0, "outside": "stop"}})
     b, tilt = s.bodies, []
     while s.time < 0.4 and not b.gone[0]:
         s.step()
