@@ -244,6 +244,12 @@ def test_a_wrong_opening_is_told(faces, said):
     assert said in str(error.value)
 
 
+def test_an_opening_without_gravity_is_told():
+    for up in (0.0, 9.81):
+        with pytest.raises(InputError, match=r"x_max.kind: gravity = \[0.0, 0.0, .*\]: must go along -z beside an outlet"):
+            parse(reach(gravity=[0.0, 0.0, up]))
+
+
 def test_an_inlet_without_water_is_told():
     given = reach()
     given["water"]["fill"][0]["min"] = [0.2, 0.0, 0.0]

@@ -24,6 +24,8 @@ def faults(case):
             found.append(f'box.faces.{name} = "{kind}": must be {_PLACE[kind]}; the water flows along x')
         elif kind in _PLACE and not (case.water.scheme.WET and case.water.fill):
             found.append(f'box.faces.{name} = "{kind}": there is no water, water.fill, to begin with')
+        elif kind in _PLACE and case.gravity[2] >= 0.0:
+            found.append(f"box.faces.{name}.kind: gravity = {list(case.gravity)}: must go along -z beside an {kind}")
         elif kind in _PLACE:
             found += [f"box.faces.{name}.{text}" for text in {"inlet": _inlet, "outlet": _outlet}[kind](case)]
     return found
