@@ -246,7 +246,7 @@ def test_a_wrong_opening_is_told(faces, said):
 
 def test_an_opening_without_gravity_is_told():
     for up in (0.0, 9.81):
-        with pytest.raises(InputError, match=r"x_max.kind: gravity = \[0.0, 0.0, .*\]: must go along -z beside an outlet"):
+        with pytest.raises(InputError, match=r"x_max.kind: gravity = .*: must go along -z beside an outlet"):
             parse(reach(gravity=[0.0, 0.0, up]))
 
 
