@@ -270,6 +270,11 @@ def test_what_is_near_the_inlet_is_seen_at_the_level_of_now_and_across_sides_tha
     assert seen.row.tolist() == [1, 1] and seen.plan.cy == pytest.approx([0.17, -0.01])
 
 
+def test_thin_floes_are_told_of_once():
+    said = [warning for warning in parse(reach(thickness=0.03)).warnings() if "usable loads" in warning]
+    assert len(said) == 1 and said[0].startswith("ice.supplies.drift: ")
+
+
 WRONG = [
     ({"concentration": None}, "ice.supplies.drift.concentration, discharge: none given; must be exactly one"),
     ({"discharge": 0.01}, "drift.concentration, discharge: both given; must be exactly one"),
