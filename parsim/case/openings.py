@@ -1,5 +1,6 @@
 """What may be wrong with inlet and outlet of a case."""
 
+import functools
 import itertools
 
 import numpy as np
@@ -107,6 +108,7 @@ def inlet_of(case):
             solid |= places.clearance(place, points) <= 0.0
     stands = np.minimum.accumulate(solid.reshape(y.size, z.size), axis=1).mean(axis=1) * case.box.size[2]
 
+    @functools.lru_cache
     def at(level):
         depth = np.maximum(level - low[2] - stands, 0.0)
         return float(depth.mean()) * case.width, float((depth > 0.0).mean()) * case.width, float(depth.max())
