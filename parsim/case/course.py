@@ -17,7 +17,7 @@ Course = Number | Rows  # rows of time, s, and value: straight in between, const
 
 
 def at_time(course, time):
-    """The value of a `Course` at a time, s."""
+    """The value of a `Course` at a time, s; of other `Rows` at what they begin with."""
     if isinstance(course, float):
         return course
     after = bisect.bisect_right(course, time, key=operator.itemgetter(0))  # asked for in every step, of many rows

@@ -14,6 +14,7 @@ import numpy as np
 
 from parsim.case import supply
 from parsim.case.ice_faults import floes_of
+from parsim.case.openings import level_at_start
 from parsim.case.places import Place
 from parsim.case.plans import plan_of
 from parsim.geometry.faces import period
@@ -84,7 +85,7 @@ class Passage:
         self.queues = [_Queue(case, given) for given in case.ice.supplies]
         self._period = np.array(period(case))
         self._length = np.where(np.isfinite(self._period), self._period, 0.0)
-        self._level = supply.level_at_start(case)
+        self._level = level_at_start(case)
         driven = {joint.body for joint in case.joints}
         self._free = np.array([not body.fixed and body.name not in driven for body in case.bodies], bool)
         self._goal = np.zeros(len(bodies))  # of the speed of what is led, m/s
