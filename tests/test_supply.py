@@ -143,6 +143,22 @@ def test_a_blocked_supply_waits_and_says_how_long():
     assert account["let_in"] == 0 and account["blocked"] > 0.05, "within the way in which it stops none begins to come"
 
 
+@pytest.mark.parametrize("supplied", [True, False])
+def test_no_water_comes_into_what_is_pushed_back_into_the_inlet(supplied):
+    """As a jam that has grown up to it may be."""
+    given = reach(bodies=[block(0.03, name="jam", fixed=False, position=[0.03, 0.5, "float"])], begins=0.9)
+    s = simulation(given if supplied else given | {"ice": {}})
+    b, inlet, (_, _, z) = s.bodies, s.solids.openings.inlet, s.bodies.position[0].copy()
+    while s.time < 0.15:
+        b.position[0, 2], b.quaternion[0], b.spin[0] = z, (1.0, 0.0, 0.0, 0.0), 0.0
+        b.velocity[0] = -0.2, 0.0, 0.0
+        s.step()
+    assert b.position[0, 0] < 0.01 and inlet.covered.sum() >= 3 and row(Counts, s)["in_bodies"] == 0
+    b.position[0, 0] = 0.1
+    s.solids.openings.passage.turn(s.time)
+    assert not inlet.covered.any()
+
+
 def test_what_passes_the_outlet_is_led_out_level():
     given = reach(
         bodies=[block(0.44, name="out", fixed=False, position=[0.44, 0.5, "float"], velocity=[0.5, 0.0, 0.0])]
