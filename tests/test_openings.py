@@ -128,6 +128,14 @@ def test_no_water_comes_in_where_something_fixed_stands():
     assert p.x[at].min() > -0.005 and not ((p.x[at] < 0.295) & (p.z[at] < 0.035)).any(), "none gets under it"
 
 
+def test_a_wave_over_a_sill_is_let_out_by_the_depth_there():
+    sill = {"name": "sill", "shape": {"size": [0.3, 1.0, 0.04]}, "density": 2000.0, "position": [0.15, 0.5, 0.02]}
+    more = {"materials": WOOD, "bodies": [sill | {"material": "wood", "fixed": True}]}
+    inlet = simulation(reach({"absorb": 1.0}) | more).solids.openings.inlet
+    inlet.follow(0.101, 1.0, 1e-9)
+    assert 0.04 - inlet.discharge == pytest.approx(math.sqrt(9.81 * 0.06) * 0.001, rel=1e-3)
+
+
 def test_water_goes_on_beyond_the_outlet_and_not_back():
     s = simulation(reach())
     outlet, p = s.solids.openings.outlet, s.domain.particles

@@ -78,9 +78,11 @@ class Inlet:
         self._flow()
 
     def _give_way(self, level, dt):
-        """Let a wave out: dV = -sqrt(g / h) dh."""
-        depth, gravity = max(self._mean - self._floor, self._case.spacing), -self._case.gravity[2]
-        area = depth * self._case.width
+        """Let a wave out: dV = -sqrt(g / h) dh, with the depth over what stands there."""
+        over, gravity = self._mean - self._bottom.reshape(self._shape)[:, 0], -self._case.gravity[2]
+        wet = over > self._case.spacing
+        depth = float(over[wet].mean()) if wet.any() else self._case.spacing
+        area = depth * self._case.width * max(float(wet.mean()), 1.0 / wet.size)
         lag = _TRAVELS * depth / max(self.discharge / area, 0.1 * math.sqrt(gravity * depth))
         self._mean += min(dt / lag, 1.0) * (level - self._mean)
         gone = self._side.absorb * math.sqrt(gravity / depth) * (level - self._mean) * area
