@@ -2,6 +2,7 @@
 
 import json
 import math
+import time as clock
 
 import numpy as np
 import pytest
@@ -93,3 +94,15 @@ def test_a_wrong_filter_is_told(wrong, said):
     with pytest.raises(InputError) as error:
         parse(tank(0.2, 0.1, 0.01) | {"output": {"sensors": [PROBE | {"filter": wrong}]}})
     assert said in str(error.value)
+
+
+def test_a_mean_over_no_time_is_the_last_value():
+    assert fed(Mean(kind="mean", over=1e-30).memory(), [1e-3] * 3, lambda time: time).value() == pytest.approx([3e-3])
+
+
+def test_a_mean_over_many_steps_costs_no_more_for_each():
+    memory, began = Mean(kind="mean", over=1.0).memory(), clock.process_time()
+    for _ in range(30000):
+        memory.see(1e-4, np.zeros(1))
+    assert clock.process_time() - began < 3.0, "20 s where each step adds up all that is held"
+    assert len(memory.kept()) in (10000, 10001)

@@ -108,6 +108,15 @@ def test_what_stands_there_is_left_free(shape, share):
     assert_room(found, 0.04, fixed=[wall])
 
 
+@pytest.mark.parametrize("shape", ["box", "disc", "polygon"])
+def test_what_stands_right_beside_the_rectangle_is_kept_off_too(shape):
+    wall = np.array([[0.0, -3.0], [0.99, -3.0], [0.99, 5.0], [0.0, 5.0]])
+    centre = wall.mean(axis=0)
+    fixed = moved(outlines([wall - centre], [0.0]), *(np.array([v]) for v in (*centre, 1.0, 0.0)))
+    found = spread(covering(0.2 * 48.0, 4, 1, laws(shape)), REGION, fixed, 0.3)
+    assert min(corners(one)[:, 0].min() for one in found) >= 0.99 + 0.3 - 1e-6
+
+
 def test_where_there_is_no_room():
     region, floes = Region((0.0, 0.0), (4.0, 4.0)), covering(0.9 * 16.0, 1, 1, laws("disc"))
     assert spread(floes, region, NOTHING, 0.05) is None

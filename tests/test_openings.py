@@ -1,6 +1,7 @@
 """Inlets and outlets: what comes in follows a formula, nothing is lost or doubled, and the level is that asked for."""
 
 import math
+import time as clock
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,12 +9,14 @@ import pytest
 from flows import WOOD, simulation, tank
 
 from parsim.boundary.outlet import normal_depth
+from parsim.case.course import at_time
 from parsim.case.model import parse
 from parsim.errors import InputError
 
 REACH = {"length": 0.6, "height": 0.2, "spacing": 0.01, "fill": (0.6, 0.1)}
 INLET = {"kind": "inlet", "discharge": 0.04}
 OUTLET = {"kind": "outlet", "level": 0.1}
+TABLE = {"kind": "table", "heights": [0.0, 0.1]}
 
 
 def reach(inlet=None, outlet=None, velocity=0.4, across=None, **changes):
@@ -56,6 +59,19 @@ def test_a_discharge_by_a_table_of_times_comes_in():
     assert inlet.discharge == pytest.approx(0.06, abs=0.001)
     assert float(inlet.travel[inlet.awake].sum()) * 0.01 == pytest.approx(asked, rel=0.01)
     assert abs(inlet.emitted * volume - asked) < inlet.awake.sum() * volume
+
+
+def test_a_table_of_many_times_costs_no_more_at_each_step():
+    times = np.cumsum(np.random.default_rng(1).uniform(0.5, 1.5, 200000))
+    values = np.sin(times)
+    rows, asked = (
+        tuple(zip(times.tolist(), values.tolist(), strict=True)),
+        [-1.0, *times[:3], 7.3, 5e4, 9e4, times[-1], 1e9],
+    )
+    began = clock.process_time()
+    found = [at_time(rows, time) for _ in range(20) for time in asked]
+    assert clock.process_time() - began < 2.0, "4 s where all rows are made an array each time"
+    assert found == 20 * np.interp(asked, times, values).tolist()
 
 
 def test_emitted_particles_stand_where_the_formula_says():
@@ -112,6 +128,14 @@ def test_no_water_comes_in_where_something_fixed_stands():
     assert p.x[at].min() > -0.005 and not ((p.x[at] < 0.295) & (p.z[at] < 0.035)).any(), "none gets under it"
 
 
+def test_a_wave_over_a_sill_is_let_out_by_the_depth_there():
+    sill = {"name": "sill", "shape": {"size": [0.3, 1.0, 0.04]}, "density": 2000.0, "position": [0.15, 0.5, 0.02]}
+    more = {"materials": WOOD, "bodies": [sill | {"material": "wood", "fixed": True}]}
+    inlet = simulation(reach({"absorb": 1.0}) | more).solids.openings.inlet
+    inlet.follow(0.101, 1.0, 1e-9)
+    assert 0.04 - inlet.discharge == pytest.approx(math.sqrt(9.81 * 0.06) * 0.001, rel=1e-3)
+
+
 def test_water_goes_on_beyond_the_outlet_and_not_back():
     s = simulation(reach())
     outlet, p = s.solids.openings.outlet, s.domain.particles
@@ -131,11 +155,22 @@ def test_water_goes_on_beyond_the_outlet_and_not_back():
 
 @pytest.mark.parametrize(("flow", "manning", "slope"), [(0.1435, 0.0213, 0.002), (5.0, 0.03, 0.0005)])
 def test_normal_depth(flow, manning, slope):
-    depth = normal_depth(flow, manning, slope, None)
+    depth = normal_depth(flow, manning, slope, 1.0, 0)
     assert depth ** (5 / 3) * math.sqrt(slope) / manning == pytest.approx(flow)
-    depth, width = normal_depth(3.0 * flow, manning, slope, 3.0), 3.0
-    area = width * depth
-    assert area * (area / (width + 2.0 * depth)) ** (2 / 3) * math.sqrt(slope) / manning == pytest.approx(3.0 * flow)
+    for width in (3.0, 0.01):
+        depth = normal_depth(width * flow, manning, slope, width, 2)
+        area = width * depth
+        through = area * (area / (width + 2.0 * depth)) ** (2 / 3) * math.sqrt(slope) / manning
+        assert through == pytest.approx(width * flow)
+    assert normal_depth(0.0, manning, slope, 3.0, 2) == 0.0
+
+
+def test_the_normal_depth_between_sides_that_repeat_is_that_of_a_wide_channel():
+    given = reach({"discharge": 0.002}, {"kind": "outlet", "normal": {"manning": 0.02, "slope": 0.0013}}, across=0.05)
+    given["box"]["faces"] |= {"y_min": "periodic", "y_max": "periodic"}
+    out = simulation(given).solids.openings.outlet
+    out.discharge = 0.002
+    assert out._asked(0.0) == pytest.approx((0.02 * 0.04 / math.sqrt(0.0013)) ** 0.6)
 
 
 @pytest.mark.parametrize(("outlet", "level"), [
@@ -207,6 +242,11 @@ WRONG = [
     ({"x_min": INLET | {"discharge": [[1.0, 0.1], [1.0, 0.2]]}}, "x_min.discharge: time 1 after 1 s: times must grow"),
     ({"x_min": INLET | {"level": 0.005}}, "x_min.level = 0.005: must be more than a spacing above the floor"),
     ({"x_min": INLET | {"profile": {"kind": "log", "roughness": 5.0}}}, "profile.roughness = 5.0: must be less than"),
+    ({"x_min": INLET | {"level": 0.3}}, "x_min.level = 0.3: must be below the top of the box, 0.2 m"),
+    ({"x_min": INLET | {"level": [[0.0, 0.1], [9.0, 0.015]]}}, "discharge = 0.04: is 2.667 m/s through 0.015 m2, more"),
+    ({"x_min": INLET | {"profile": TABLE | {"shares": [2.0, -0.5]}}}, "profile.shares = [2.0, -0.5]: must be 0"),
+    ({"x_min": INLET | {"profile": TABLE | {"shares": [0.0, 0.0]}}}, "profile.shares = [0.0, 0.0]: must not all be 0"),
+    ({"x_max": {"kind": "outlet", "rating": [[0.0, 0.1], [1.0, 9.0]]}}, "rating: level = 9: must be below the top"),
     ({"x_max": {"kind": "outlet"}}, "level, rating, normal: none given; must be exactly one"),
     ({"x_max": OUTLET | {"rating": [[0.0, 0.1], [1.0, 0.2]]}}, "level and rating given; must be exactly one"),
     ({"x_max": {"kind": "outlet", "level": -0.1}}, "x_max.level = -0.1: must be above the floor"),
@@ -227,6 +267,12 @@ def test_a_wrong_opening_is_told(faces, said):
     assert said in str(error.value)
 
 
+def test_an_opening_without_gravity_is_told():
+    for up in (0.0, 9.81):
+        with pytest.raises(InputError, match=r"x_max.kind: gravity = .*: must go along -z beside an outlet"):
+            parse(reach(gravity=[0.0, 0.0, up]))
+
+
 def test_an_inlet_without_water_is_told():
     given = reach()
     given["water"]["fill"][0]["min"] = [0.2, 0.0, 0.0]
@@ -235,6 +281,13 @@ def test_an_inlet_without_water_is_told():
     given["water"] = {}
     with pytest.raises(InputError, match='x_min = "inlet": there is no water'):
         parse(given)
+
+
+def test_levels_may_be_below_zero():
+    given = reach({"level": -0.3}, OUTLET | {"level": [[0.0, -0.3], [9.0, -0.35]]})
+    given["box"] |= {"min": [0.0, 0.0, -0.4], "max": [0.6, 1.0, 0.1]}
+    given["water"]["fill"][0] |= {"min": [0.0, 0.0, -0.4], "max": [0.6, 1.0, -0.3]}
+    assert parse(given).box.faces.x_max.level[1] == (9.0, -0.35)
 
 
 def test_the_row_of_the_series_balances():

@@ -4,6 +4,7 @@ import tomllib
 
 import numpy as np
 import pytest
+import trimesh
 from flows import simulation, tank
 
 from parsim.case import ice
@@ -102,6 +103,16 @@ def test_floes_come_in_afloat_and_nothing_is_lost():
     assert 0.0 <= wanted - s.solids.openings.passage.queues[0].given < 0.1, "as much as was asked for, to a floe"
 
 
+def test_what_is_yet_before_the_inlet_covers_no_water():
+    given = reach(begins=0.05)
+    given["water"] |= {"friction": {"kind": "wall_law", "roughness": 0.001}, "eddies": {"kind": "mixing_length"}}
+    s = simulation(given)
+    while s.bodies.gone.all():
+        s.step()
+    front = s.bodies.position[0, 0] + s.bodies.shapes[0].half[0]
+    assert -0.02 < front < 0.0 and not s.solids.depths.covered.any()
+
+
 def test_a_supply_by_discharge_begins_and_ends():
     s = simulation(reach(concentration=None, discharge=[[0.0, 0.0], [0.2, 0.02]], begins=0.1, ends=0.3))
     queue = s.solids.openings.passage.queues[0]
@@ -132,11 +143,27 @@ def test_a_blocked_supply_waits_and_says_how_long():
     assert account["let_in"] == 0 and account["blocked"] > 0.05, "within the way in which it stops none begins to come"
 
 
+@pytest.mark.parametrize("supplied", [True, False])
+def test_no_water_comes_into_what_is_pushed_back_into_the_inlet(supplied):
+    """As a jam that has grown up to it may be."""
+    given = reach(bodies=[block(0.03, name="jam", fixed=False, position=[0.03, 0.5, "float"])], begins=0.9)
+    s = simulation(given if supplied else given | {"ice": {}})
+    b, inlet, (_, _, z) = s.bodies, s.solids.openings.inlet, s.bodies.position[0].copy()
+    while s.time < 0.15:
+        b.position[0, 2], b.quaternion[0], b.spin[0] = z, (1.0, 0.0, 0.0, 0.0), 0.0
+        b.velocity[0] = -0.2, 0.0, 0.0
+        s.step()
+    assert b.position[0, 0] < 0.01 and inlet.covered.sum() >= 3 and row(Counts, s)["in_bodies"] == 0
+    b.position[0, 0] = 0.1
+    s.solids.openings.passage.turn(s.time)
+    assert not inlet.covered.any()
+
+
 def test_what_passes_the_outlet_is_led_out_level():
     given = reach(
         bodies=[block(0.44, name="out", fixed=False, position=[0.44, 0.5, "float"], velocity=[0.5, 0.0, 0.0])]
     )
-    s = simulation(given | {"ice": {}})
+    s = simulation(given | {"ice": {}, "run": {"until": 1.0, "outside": "stop"}})
     b, tilt = s.bodies, []
     while s.time < 0.4 and not b.gone[0]:
         s.step()
@@ -173,6 +200,95 @@ def test_a_supply_goes_on_from_what_it_kept():
         each.solids.openings.passage.turn(one.time)
     assert np.array_equal(*(each.solids.openings.passage._goal for each in (one, two)))
     assert one.solids.openings.passage._goal.max() > 0.0
+
+
+def test_floes_come_in_at_the_level_of_the_inlet_not_at_that_of_the_fill():
+    given = reach()
+    given["box"]["faces"]["x_min"]["level"] = 0.14
+    s = simulation(given)
+    while s.bodies.gone[0]:
+        s.step()
+    assert s.bodies.position[0, 2] - 0.02 == pytest.approx(0.14 - 0.9 * 0.04)
+
+
+def test_what_comes_in_may_be_left_by_the_level_and_by_the_stream():
+    s = simulation(reach(until=3.0, bodies=[block(0.2, shape={"size": [0.05, 1.0, 0.12]}, position=[0.2, 0.5, 0.06])]))
+    b, openings = s.bodies, s.solids.openings
+    while not np.isfinite(b.lead).any():
+        s.step()
+    coming = np.flatnonzero(np.isfinite(b.lead))
+    openings.inlet.level -= 0.06
+    openings.passage.turn(s.time)
+    assert openings.passage._goal[coming] == pytest.approx(openings.inlet.surface_speed), "it is above all others"
+    openings.inlet.discharge = openings.outlet._edge = 0.0
+    openings.inlet._flow()
+    openings.passage.turn(s.time)
+    for _ in range(1000):
+        openings.passage.advance(s.time, 1e-3)
+    assert b.lead[coming].max() < 0.05, "it stops with the water"
+
+
+def test_what_comes_to_the_outlet_against_the_stream_is_not_led_back():
+    given = reach(bodies=[block(0.44, name="out", fixed=False, position=[0.44, 0.5, "float"])])
+    s = simulation(given | {"ice": {}})
+    s.bodies.position[0, 0], s.bodies.velocity[0, 0] = 0.51, -0.1
+    s.solids.openings.outlet._edge = -0.1
+    s.solids.openings.passage.turn(0.0)
+    assert s.bodies.lead[0] == 0.0 and s.solids.openings.passage._goal[0] == 0.0
+
+
+def test_as_many_floes_are_drawn_as_a_falling_level_and_a_sill_let_come():
+    """By less depth the surface is faster."""
+
+    def area(given):
+        case = parse(given)
+        return sum(body.shape.size[0] for body in ice.floes_of(case, case.ice.supplies[0]))
+
+    given = reach(until=2.0)
+    given["box"]["faces"]["x_min"]["level"] = [[0.0, 0.12], [0.1, 0.06], [2.0, 0.06]]
+    assert area(given) >= 0.9 * 0.06 * (0.1 * np.log(2.0) / 0.06 + 1.9 / 0.06)
+    sill = block(0.025, name="sill", position=[0.025, 0.5, 0.03])
+    assert area(reach(until=2.0, bodies=[sill])) >= 0.9 * 0.06 / 0.06 * 2.0
+    with pytest.raises(InputError, match="2 spacings at least, and the inlet is 0.04 m deep"):
+        parse(reach(bodies=[sill | {"shape": {"size": [0.05, 1.0, 0.08]}, "position": [0.025, 0.5, 0.04]}]))
+
+
+def test_a_concentration_is_that_of_the_surface_between_banks():
+    bank = block(0.1, name="bank", shape={"size": [0.2, 0.06, 0.2]}, position=[0.1, 0.03, 0.1])
+    s = simulation(reach(across=0.18, bodies=[bank], size=0.06))
+    inlet, queue = s.solids.openings.inlet, s.solids.openings.passage.queues[0]
+    assert inlet.surface_width == pytest.approx(0.12)
+    s.solids.openings.passage.advance(0.5, 0.01)
+    assert queue.wanted == pytest.approx(0.01 * 0.9 * 0.12 * inlet.surface_speed)
+
+
+@pytest.mark.parametrize("aspect", [2.14, 2.0])
+def test_a_floe_that_fits_only_lengthwise_comes_in_so(aspect):
+    s = simulation(reach(across=0.16, size=0.3, aspect=aspect, shape="box", until=20.0))
+    passage = s.solids.openings.passage
+    queue, nothing = passage.queues[0], passage._near()
+    assert not nothing.row.size and all(passage._enters(queue, nothing, 0.0) for _ in range(12))
+
+
+def test_what_is_near_the_inlet_is_seen_at_the_level_of_now_and_across_sides_that_repeat(tmp_path):
+    trimesh.creation.icosphere(3, 0.06).export(tmp_path / "ball.stl")
+    shape = {"kind": "mesh", "file": str(tmp_path / "ball.stl")}
+    given = reach(across=0.18, size=0.06, bodies=[block(0.1, shape=shape, position=[0.1, 0.09, 0.06])])
+    given["box"]["faces"] |= {"y_min": "periodic", "y_max": "periodic"}
+    s = simulation(given)
+    passage, inlet, wide = s.solids.openings.passage, s.solids.openings.inlet, []
+    for inlet.level in (0.15, 0.1, 0.15):
+        ends = passage._seen(0).plan.extents()
+        wide.append(ends[3].max() - ends[1].min())
+    assert wide[0] == wide[2] < wide[1] - 0.01
+    s.bodies.position[1] = 0.1, 0.17, 0.12
+    seen = passage._seen(1)
+    assert seen.row.tolist() == [1, 1] and seen.plan.cy == pytest.approx([0.17, -0.01])
+
+
+def test_thin_floes_are_told_of_once():
+    said = [warning for warning in parse(reach(thickness=0.03)).warnings() if "usable loads" in warning]
+    assert len(said) == 1 and said[0].startswith("ice.supplies.drift: ")
 
 
 WRONG = [
@@ -213,6 +329,11 @@ def test_a_supply_wants_an_inlet_and_floes_that_fit_through_it():
     with pytest.raises(InputError, match="bodies.block.enters = true: is written with the floes of ice.supplies"):
         parse(given)
     given = reach()
+    with pytest.raises(InputError, match='drift.name = "drift": there is no spacing'):
+        parse({key: value for key, value in given.items() if key != "spacing"})
+    faces = {"x_min": given["box"]["faces"]["x_min"] | {"profile": {"kind": "table", "heights": [], "shares": []}}}
+    with pytest.raises(InputError, match='"drift": the water has no speed at the surface; box.faces.x_min.profile'):
+        parse(given | {"box": given["box"] | {"faces": faces}})
     given["ice"]["supplies"].append(SUPPLY)
     with pytest.raises(InputError, match='ice: name = "drift" is given more than once'):
         parse(given)

@@ -16,6 +16,7 @@ import numpy as np
 
 from parsim.case.course import at_time
 from parsim.case.fill import water_at
+from parsim.geometry.faces import walled_sides
 from parsim.particles.state import FLUID
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Outlet:
         self.end = self.x + layers * case.spacing
         self._length = case.box.size[0]
         self._floor, self._gravity = case.box.min[2], -case.gravity[2]
-        self._width = case.width
+        self._width, self._beside = case.width, sum(axis == 1 for axis, _, _ in walled_sides(case))
         self._head = case.water.density * self._gravity
         self.discharge = self._mean = self._edge = math.nan
         self._gain = self._rise = 0.0
@@ -96,10 +97,8 @@ class Outlet:
             return at_time(side.level, time)
         flow = max(self.discharge, 0.0)
         if side.rating is not None:
-            flows, levels = np.array(side.rating).T
-            return float(np.interp(flow, flows, levels))
-        wide = None if self._case.dimensions == 2 else self._width
-        return self._floor + normal_depth(flow, side.normal.manning, side.normal.slope, wide)
+            return at_time(side.rating, flow)
+        return self._floor + normal_depth(flow, side.normal.manning, side.normal.slope, self._width, self._beside)
 
     def find(self, p: Particles, own: slice) -> None:
         """Note which of this rank's particles `p` may be in the zone before the lists are built anew."""
@@ -137,15 +136,20 @@ class Outlet:
         self.removed = int(removed)
 
 
-def normal_depth(discharge: float, manning: float, slope: float, width: float | None) -> float:
-    """Depth, m, of uniform flow by Manning in a rectangle of a width, m; of a wide channel per metre if None."""
-    wide = (manning * discharge / ((width or 1.0) * math.sqrt(slope))) ** 0.6
-    if width is None:
+def normal_depth(discharge: float, manning: float, slope: float, width: float, walls: int) -> float:
+    """Depth, m, of uniform flow by Manning in a rectangle of a width, m, with so many walls beside."""
+    wide = (manning * discharge / (width * math.sqrt(slope))) ** 0.6
+    if not walls or wide == 0.0:
         return wide
-    low, high = wide, 10.0 * wide + 1e-9
+
+    def flow(depth):
+        area = width * depth
+        return area * (area / (width + walls * depth)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
+
+    low, high = wide, 2.0 * wide
+    while flow(high) < discharge:
+        low, high = high, 2.0 * high
     while high - low > 1e-9 * high:
         depth = 0.5 * (low + high)
-        area = width * depth
-        flow = area * (area / (width + 2.0 * depth)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
-        low, high = (depth, high) if flow < discharge else (low, depth)
+        low, high = (depth, high) if flow(depth) < discharge else (low, depth)
     return 0.5 * (low + high)

@@ -1,15 +1,19 @@
 """What may be wrong with inlet and outlet of a case."""
 
+import functools
 import itertools
 
 import numpy as np
 
-from parsim.case.course import at_time, largest, least, wrong_course
+from parsim.case import places
+from parsim.case.bodies import placed
+from parsim.case.course import at_time, highest, least, times_of, wrong_course
 from parsim.case.fill import water_at
 from parsim.geometry.faces import SIDES
 from parsim.solid.shapes.bed import BedShape
 
 _PLACE = {"inlet": "x_min", "outlet": "x_max"}
+_MOST = 500  # columns, and rows of them, in which an inlet is looked at
 
 
 def faults(case):
@@ -21,6 +25,8 @@ def faults(case):
             found.append(f'box.faces.{name} = "{kind}": must be {_PLACE[kind]}; the water flows along x')
         elif kind in _PLACE and not (case.water.scheme.WET and case.water.fill):
             found.append(f'box.faces.{name} = "{kind}": there is no water, water.fill, to begin with')
+        elif kind in _PLACE and case.gravity[2] >= 0.0:
+            found.append(f"box.faces.{name}.kind: gravity = {list(case.gravity)}: must go along -z beside an {kind}")
         elif kind in _PLACE:
             found += [f"box.faces.{name}.{text}" for text in {"inlet": _inlet, "outlet": _outlet}[kind](case)]
     return found
@@ -38,21 +44,81 @@ def _inlet(case):
             yield from wrong_course(key, course)
             if least(course) < 0.0 and key == "discharge":
                 yield f"discharge = {least(course):g}: must be 0 or more; it flows in"
-    level = standing[1] if side.level is None else at_time(side.level, 0.0)
     floor, what = _ground(case, case.box.min[0])
-    if side.level is not None and least(side.level) <= floor + case.spacing:
-        yield f"level = {least(side.level):g}: must be more than a spacing above the {what}, {floor!r} m"
-        return
-    depth = level - case.box.min[2]
-    width = case.width
-    mean = largest(side.discharge) / (depth * width) if depth * width > 0.0 else 0.0  # the box is told of elsewhere
+    if side.level is not None:
+        if least(side.level) <= floor + case.spacing:
+            yield f"level = {least(side.level):g}: must be more than a spacing above the {what}, {floor!r} m"
+            return
+        yield from _over_the_top(case, "level", highest(side.level))
+    yield from _fast(case)
+    if side.profile is not None:
+        depth = (standing[1] if side.level is None else at_time(side.level, 0.0)) - case.box.min[2]
+        wrong = side.profile.faults(depth) or _backward(side.profile)
+        yield from (f"profile.{text}" for text in wrong)
+
+
+def _fast(case):
+    """Whether the water comes in faster than is expected, at any time."""
+    side, inlet, fastest = case.box.faces.x_min, inlet_of(case), (0.0, 0.0, 0.0)
+    for time in (0.0, *times_of(side.discharge, side.level)):
+        level = level_at_start(case) if side.level is None else at_time(side.level, time)
+        area, discharge = inlet(level)[0], at_time(side.discharge, time)
+        if area > 0.0:  # else the box is told of elsewhere
+            fastest = max(fastest, (discharge / area, discharge, area))
+    mean, discharge, area = fastest
     if mean > case.speed:
         yield (
-            f"discharge = {largest(side.discharge):g}: is {mean:.4g} m/s through {depth * width:.4g} m2, more than the "
-            f"largest expected speed, {case.speed:.4g} m/s; give water.speed"
+            f"discharge = {discharge:g}: is {mean:.4g} m/s through {area:.4g} m2, more than the largest expected "
+            f"speed, {case.speed:.4g} m/s; give water.speed"
         )
-    if side.profile is not None:
-        yield from (f"profile.{text}" for text in side.profile.faults(depth))
+
+
+def _over_the_top(case, key, level):
+    if level > case.box.max[2]:
+        yield f"{key} = {level:g}: must be below the top of the box, {case.box.max[2]!r} m"
+
+
+def _backward(profile):
+    """What is wrong with a profile of water that comes in, which another one of a fill may have."""
+    shares = getattr(profile, "shares", (1.0,))
+    if min(shares) < 0.0:
+        return [f"shares = {list(shares)}: must be 0 or more; it flows in"]
+    return [] if max(shares) > 0.0 else [f"shares = {list(shares)}: must not all be 0; it flows in"]
+
+
+def level_at_start(case):
+    """Level of the water that stands at the inlet at the start, m; that of the floor where there is none."""
+    x, y = case.box.min[0] + 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1])
+    standing = water_at(case.water.fill, x, y)
+    return standing[1] if standing else case.box.min[2]
+
+
+def inlet_of(case):
+    """The function of a level, m, that gives what an inlet is of the water that comes in.
+
+    Its area, m2 (2D: m), the width of its surface, m (2D: 1), and its greatest depth, m, over what is fixed and stands
+    there, in columns a spacing wide, or wider in a large box.
+    """
+    low, l0 = case.box.min, case.spacing
+    y, z = (low[a] + (np.arange(n) + 0.5) * case.box.size[a] / n for a, n in ((a, _columns(case, a)) for a in (1, 2)))
+    points = np.stack([part.ravel() for part in np.meshgrid(low[0] + 0.5 * l0, y, z, indexing="ij")], axis=1)
+    solid = np.zeros(len(points), bool)
+    for place in (places.of_body(body) for body in placed(case) if body.fixed):
+        if place.low()[0] <= points[0, 0] <= place.high()[0]:
+            solid |= places.clearance(place, points) <= 0.0
+    stands = np.minimum.accumulate(solid.reshape(y.size, z.size), axis=1).mean(axis=1) * case.box.size[2]
+
+    @functools.lru_cache
+    def at(level):
+        depth = np.maximum(level - low[2] - stands, 0.0)
+        return float(depth.mean()) * case.width, float((depth > 0.0).mean()) * case.width, float(depth.max())
+
+    return at
+
+
+def _columns(case, axis):
+    """How many columns an inlet is looked at in across, or how many rows up."""
+    return 1 if axis not in case.axes else min(max(round(case.box.size[axis] / case.spacing), 1), _MOST)
 
 
 def _outlet(case):
@@ -62,14 +128,13 @@ def _outlet(case):
         told = " and ".join(given) or "none"
         yield f"level, rating, normal: {told} given; must be exactly one"
         return
-    (floor, what), top = _ground(case, case.box.max[0]), case.box.max[2]
+    floor, what = _ground(case, case.box.max[0])
     if side.level is not None:
         yield from wrong_course("level", side.level)
-        low, high = least(side.level), largest(side.level)
+        low, high = least(side.level), highest(side.level)
         if low <= floor:
             yield f"level = {low:g}: must be above the {what}, {floor!r} m"
-        if high > top:
-            yield f"level = {high:g}: must be below the top of the box, {top!r} m"
+        yield from _over_the_top(case, "level", high)
     if side.rating is not None:
         rows = np.array(side.rating)
         for column, name in enumerate(("discharge", "level")):
@@ -79,6 +144,7 @@ def _outlet(case):
                 yield f"rating: {name} {high:g} after {low:g}: must grow from row to row"
         if rows[:, 1].min() <= floor:
             yield f"rating: level {rows[:, 1].min():g} m: must be above the {what}, {floor!r} m"
+        yield from _over_the_top(case, "rating: level", rows[:, 1].max())
 
 
 def _ground(case, x):

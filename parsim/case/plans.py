@@ -11,12 +11,13 @@ _WAYS = 24  # directions along which a body is felt, besides those of its faces
 _STEPS = 10**7  # of a turn: directions as near as that are one
 
 
-def plan_of(place, bottom):
-    """Outlines that hold all of a body in plan; of a mesh or a bed those of its faces that reach above `bottom`, m."""
+def plan_of(place, bottom, end=math.inf):
+    """Outlines that hold all of a body in plan; of a mesh or a bed those of its faces that reach above `bottom`, m, and
+    begin before `end` along x, m."""
     if isinstance(place.shape, Meshed):
         points, faces = place.shape.surface()
         corners = (points @ place.axes.T + place.centre)[faces]
-        corners = corners[corners[:, :, 2].max(axis=1) > bottom]
+        corners = corners[(corners[:, :, 2].max(axis=1) > bottom) & (corners[:, :, 0].min(axis=1) < end)]
         polygons = [_around(lambda way, own=own: float((own @ way).max())) for own in corners]
     else:
         polygons = [place.centre[:2] + _around(place.along, (place.axes @ place.shape.normals().T).T)]

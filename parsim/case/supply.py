@@ -4,8 +4,8 @@ import itertools
 import math
 
 from parsim.case import ice_faults
-from parsim.case.course import at_time, least, wrong_course
-from parsim.case.fill import water_at
+from parsim.case.course import at_time, least, times_of, wrong_course
+from parsim.case.openings import inlet_of, level_at_start
 from parsim.errors import InputError
 from parsim.ice.draw import drawn
 from parsim.ice.field import MOST
@@ -16,7 +16,7 @@ _UNDER = 2.0  # spacings of water under a floe as it comes in
 
 def read(case, given):
     """(a supply with what its files say, messages)."""
-    supply, wrong = ice_faults.read(given)
+    supply, wrong = ice_faults.read(given, case.dimensions)
     return supply, wrong or [*_wrong(case, supply)]
 
 
@@ -46,30 +46,38 @@ def rate(supply, time, width, speed):
     return supply.concentration * width * speed if supply.discharge is None else at_time(supply.discharge, time)
 
 
-def _depth(case):
-    """Depth of the water at the inlet at the start, m."""
-    x, y = case.box.min[0] + 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1])
-    water = water_at(case.water.fill, x, y)
-    return water[1] - case.box.min[2] if water else 0.0
-
-
 def _wanted(case, supply):
     """What it may have given until it ends."""
-    inlet, depth, width = case.box.faces.x_min, _depth(case), case.width
-    share = 1.0 if inlet.profile is None else float(inlet.profile.at(depth, depth))
     ends = case.run.until if supply.ends is None else supply.ends
     if ends <= supply.begins:
         return 0.0
-    times = [supply.begins, ends]
-    for course in (inlet.discharge, supply.discharge):
-        times += [] if isinstance(course, float | None) else [time for time, _ in course]
-    times = sorted(time for time in {*times} if supply.begins <= time <= ends)
-    total = 0.0
+    asked, total = _asked(case, supply), 0.0
+    courses = [case.box.faces.x_min.discharge, case.box.faces.x_min.level, supply.discharge]
+    times = sorted(time for time in {supply.begins, ends, *times_of(*courses)} if supply.begins <= time <= ends)
     for first, last in itertools.pairwise(times):
-        middle = 0.5 * (first + last)  # straight in between
-        speed = share * at_time(inlet.discharge, middle) / (width * depth)
-        total += (last - first) * rate(supply, middle, width, speed)
+        parts = [asked(time) for time in (first, 0.5 * (first + last), last)]
+        total += (last - first) * (parts[0] + 4.0 * parts[1] + parts[2]) / 6.0  # Simpson: nearly straight in between
     return total * (_MORE if supply.discharge is None else 1.0)
+
+
+def _asked(case, supply):
+    """The function of time, s, that gives its `rate` in the water that the case asks for, as if it never ended."""
+    if supply.discharge is not None:
+        return lambda time: at_time(supply.discharge, time)
+    side, inlet, start = case.box.faces.x_min, inlet_of(case), level_at_start(case)
+
+    def asked(time):
+        area, width, depth = inlet(start if side.level is None else at_time(side.level, time))
+        share = 1.0 if side.profile is None else float(side.profile.at(depth, depth))
+        return supply.concentration * width * share * at_time(side.discharge, time) / area
+
+    return asked
+
+
+def _least_level(case):
+    """The least level of the water that comes in, m: where it is that of the water inside, at the start."""
+    level = case.box.faces.x_min.level
+    return level_at_start(case) if level is None else least(level)
 
 
 def _wrong(case, supply):
@@ -77,8 +85,12 @@ def _wrong(case, supply):
     if case.box.faces.x_min.kind != "inlet":
         yield f'name = "{supply.name}": floes come in through an inlet; box.faces.x_min must be of the kind "inlet"'
         return
-    if _depth(case) * case.width <= 0.0:
-        yield f'name = "{supply.name}": there is no water at the inlet'
+    area, _, depth = (0.0,) * 3 if case.spacing is None else inlet_of(case)(_least_level(case))
+    if area <= 0.0:
+        yield f'name = "{supply.name}": there is no {"spacing" if case.spacing is None else "water at the inlet"}'
+        return
+    if (profile := case.box.faces.x_min.profile) is not None and [*profile.faults(depth)]:
+        yield f'name = "{supply.name}": the water has no speed at the surface; box.faces.x_min.profile is wrong'
         return
     if (supply.concentration is None) == (supply.discharge is None):
         told = "none" if supply.discharge is None else "both"
@@ -99,7 +111,7 @@ def _wrong(case, supply):
 def _check(case, supply, found):
     """Refuse floes that are too thin for particles, too thick for the inlet or too wide."""
     ice_faults.check_thickness(case, found)
-    depth, thickest = _depth(case), max(floe.thickness for floe in found)
+    (_, _, depth), thickest = inlet_of(case)(_least_level(case)), max(floe.thickness for floe in found)
     draught = supply.density / case.water.density * thickest
     if draught > depth - _UNDER * case.spacing:
         raise InputError(

@@ -2,7 +2,8 @@
 
 A floe of a supply comes in from beyond the inlet at its draught, as fast as the surface of the water that comes in,
 which is left out where the floe is; once it is inside it is let go. It waits while another one is in its way, or where
-it is to come in: how long is a result. What floats over the outlet is led on with the water there until it is outside.
+it is to come in: how long is a result. Where a body is pushed back into the inlet no water comes in either. What floats
+over the outlet is led on with the water there until it is outside.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from parsim.case import supply
 from parsim.case.ice_faults import floes_of
+from parsim.case.openings import level_at_start
 from parsim.case.places import Place
 from parsim.case.plans import plan_of
 from parsim.geometry.faces import period
@@ -28,11 +30,13 @@ if TYPE_CHECKING:
     from parsim.case.model import Case
     from parsim.solid.bodies import Bodies
 
-_TRIES = 50  # poses that are looked at for a floe
+_TRIES = 50  # poses that are looked at for a floe, the last of them lengthwise: so all fit through the inlet
 _POSES = 3  # part of a floe's counter of draws
 _INSIDE = 1.0  # spacings inside the inlet at which a floe is let go
 _BRAKE = 2.0  # spacings in which one that is led comes to a stop: the water is not to feel a blow
 _NEAR = 0.25  # spacings from what is in its way at which it stands
+_ROUNDING = 1e-3  # spacings by which an outline may be wider than its floe
+_STEP = 0.25  # spacings of the height over which fixed bodies are seen: they are looked at anew as the level changes it
 
 
 class _Near(NamedTuple):
@@ -82,7 +86,7 @@ class Passage:
         self.queues = [_Queue(case, given) for given in case.ice.supplies]
         self._period = np.array(period(case))
         self._length = np.where(np.isfinite(self._period), self._period, 0.0)
-        self._width, self._level = case.width, inlet.level if inlet else 0.0
+        self._level = level_at_start(case)
         driven = {joint.body for joint in case.joints}
         self._free = np.array([not body.fixed and body.name not in driven for body in case.bodies], bool)
         self._goal = np.zeros(len(bodies))  # of the speed of what is led, m/s
@@ -90,19 +94,22 @@ class Passage:
         under = max((share * t for share, t in thick), default=0.0)
         over = max(((1.0 - share) * t for share, t in thick), default=0.0)
         self._band = under + 0.5 * case.spacing, over + 0.5 * case.spacing  # m about the level, in which floes come in
-        self._still: dict[int, _Near] = {}  # fixed bodies as they have been seen
+        largest = max((bodies.radius[row] for queue in self.queues for row in queue.rows), default=0.0)
+        self._end = case.box.min[0] + 2.0 * largest + 2.0 * _BRAKE * case.spacing  # m along x, of what is near
+        self._still: dict[int, tuple[float, _Near]] = {}  # fixed bodies as they have been seen, and over which height
 
     def advance(self, time: float, dt: float) -> None:
         """Count what supplies are to give in a step of dt at a time, s, and go on with the water there."""
         if time < 0.0:
             return
         for queue in self.queues:
-            queue.wanted += dt * supply.rate(queue.supply, time, self._width, self._inlet.surface_speed)
+            queue.wanted += dt * supply.rate(queue.supply, time, self._inlet.surface_width, self._inlet.surface_speed)
             queue.blocked += dt if queue.waits else 0.0
         b = self._bodies
         led = np.flatnonzero(np.isfinite(b.lead))
         if len(led):
-            fast = max(self._inlet.surface_speed if self._inlet else 0.0, self._outlet.speed if self._outlet else 0.0)
+            water = self._inlet.surface_speed if self._inlet else 0.0, self._outlet.speed if self._outlet else 0.0
+            fast = np.maximum(abs(b.lead[led]), max(water))  # what is led comes to a stop in water that stands, too
             most = dt * fast * fast / (2.0 * _BRAKE * self._case.spacing)
             b.lead[led] += np.clip(self._goal[led] - b.lead[led], -most, most)
 
@@ -114,19 +121,25 @@ class Passage:
         led, beyond = np.isfinite(b.lead), b.position[:, 0] > (self._outlet.x if self._outlet else math.inf)
         if self._outlet:
             leaving = beyond & self._free & ~b.gone
-            b.lead[leaving & ~led] = b.velocity[leaving & ~led, 0]
+            b.lead[leaving & ~led] = np.maximum(b.velocity[leaving & ~led, 0], 0.0)
             self._goal[leaving] = self._outlet.speed
+        if not self._inlet:
+            return
+        tail = b.position[:, 0] - b.reaches()[:, 0]
+        back = np.flatnonzero(~b.fixed & ~b.gone & ~led & (tail < self._inlet.x)).tolist()  # where nothing leads it
         if not self.queues:
+            if back or self._inlet.covered.any():
+                self._inlet.cover([self._place(row) for row in back])
             return
         coming = np.flatnonzero(led & ~beyond)
-        through = b.position[coming, 0] - b.reaches()[coming, 0] >= self._inlet.x + _INSIDE * self._case.spacing
+        through = tail[coming] >= self._inlet.x + _INSIDE * self._case.spacing
         b.lead[coming[through]] = math.nan
         coming = coming[~through].tolist()
         due = [queue for queue in self.queues if queue.due] if time >= 0.0 else []
         near = self._near() if coming or due else None
         for row in coming:
-            others = near.row != row
-            self._goal[row] = 0.0 if self._stopped(near.plan.take(~others), near, others) else self._inlet.surface_speed
+            stops = self._stopped(self._seen(row).plan, near, near.row != row)
+            self._goal[row] = 0.0 if stops else self._inlet.surface_speed
         for queue in self.queues:
             queue.waits = False
         for queue in due:
@@ -135,15 +148,12 @@ class Passage:
                 if not queue.waits:
                     coming.append(queue.rows[queue.next - 1])
                     near = near.joined(self._seen(coming[-1]))
-        self._inlet.cover([self._place(row) for row in coming])
+        self._inlet.cover([self._place(row) for row in coming + back])
 
     def _near(self):
         """What is there near the inlet at the height of floes that come in."""
-        b, l0 = self._bodies, self._case.spacing
-        rows = [row for queue in self.queues for row in queue.rows]
-        reach = 2.0 * b.radius[rows].max() + 2.0 * _BRAKE * l0
-        found = _Near(outlines([], []), np.zeros(0, int), np.zeros(0))
-        for row in np.flatnonzero(~b.gone & (b.position[:, 0] - b.radius < self._inlet.x + reach)):
+        b, found = self._bodies, _Near(outlines([], []), np.zeros(0, int), np.zeros(0))
+        for row in np.flatnonzero(~b.gone & (b.position[:, 0] - b.radius < self._end)):
             there = self._place(row)
             if there.low()[2] - self._band[1] < self._inlet.level < there.high()[2] + self._band[0]:
                 found = found.joined(self._seen(row))
@@ -151,14 +161,20 @@ class Passage:
 
     def _seen(self, row):
         """A body as it is seen near the inlet; across sides that repeat where its place leads back into the box."""
-        if row in self._still:
-            return self._still[row]
-        around = self._length * np.floor((self._bodies.position[row] - self._case.box.min) / self._period)
-        plan = plan_of(self._place(row, around), self._inlet.level - self._band[0])
+        step, b, box = _STEP * self._case.spacing, self._bodies, self._case.box
+        bottom = step * math.floor((self._inlet.level - self._band[0]) / step)
+        if row in self._still and self._still[row][0] == bottom:
+            return self._still[row][1]
+        around = self._length * np.floor((b.position[row] - box.min) / self._period)
+        plan = plan_of(self._place(row, around), bottom, self._end)
+        _, low, _, high = plan.extents()
+        for shift in (self._length[1], -self._length[1]) if self._length[1] else ():
+            beyond = plan.take(np.flatnonzero(low < box.min[1] if shift > 0.0 else high > box.max[1]))
+            plan = joined(plan, beyond._replace(y=beyond.y + shift, cy=beyond.cy + shift))
         count = len(plan.cx)
-        found = _Near(plan, np.full(count, row), np.full(count, self._bodies.velocity[row, 0]))
-        if self._bodies.fixed[row]:
-            self._still[row] = found
+        found = _Near(plan, np.full(count, row), np.full(count, b.velocity[row, 0]))
+        if b.fixed[row]:
+            self._still[row] = bottom, found
         return found
 
     def _place(self, row, around=0.0):
@@ -183,12 +199,12 @@ class Passage:
         own_turn = matrices(np.array([queue.shapes[k].turn], float))[0]
         flat = plan_of(Place(np.zeros(3), own_turn, queue.shapes[k]), -math.inf)
         dice = evenly(key, _POSES, 2 * _TRIES)
-        for across, around in zip(dice[::2], dice[1::2], strict=True):
+        for across, around in zip(dice[::2], [*dice[1:-1:2], 0.0], strict=True):
             turn = 0.0 if case.dimensions == 2 else 2.0 * math.pi * around
             at, heading = np.zeros(1), (np.array([math.cos(turn)]), np.array([math.sin(turn)]))
             _, low, front, high = (float(end[0]) for end in moved(flat, at, at, *heading).extents())
             left, right = case.box.min[1] + gap - low, case.box.max[1] - gap - high
-            if case.dimensions == 3 and left > right:
+            if case.dimensions == 3 and left > right + _ROUNDING * case.spacing:
                 continue
             x = self._inlet.x - gap - front
             y = 0.5 if case.dimensions == 2 else left + across * (right - left)

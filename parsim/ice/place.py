@@ -44,7 +44,7 @@ class Taken:
 
     def add(self, own: Outlines) -> None:
         """Take what one outline covers."""
-        for cell in self._over([float(end[0]) for end in own.extents()], 0.0):
+        for cell in self._over([float(end[0]) for end in own.extents()], self.gap):  # beside the region too
             self._cells.setdefault(cell, []).append(len(self._there))
         self._there.append(own)
         self._discs.append(_discs_of(own))

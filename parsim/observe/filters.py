@@ -42,6 +42,7 @@ class LowPass(Table):
 
 
 Filter = choice(Mean, LowPass)
+_BITS = 96
 
 
 class Memory(Protocol):
@@ -62,13 +63,15 @@ class Memory(Protocol):
 
 class _Window:
     def __init__(self, over):
-        self._over = over
+        self._over, self._most = over, max(_exact(over), 1)
         self._seen: deque[tuple[float, ...]] = deque()
+        self._span = 0  # time of what is held, exact: whatever has come and gone, and on from a checkpoint
 
     def see(self, dt, values):
         self._seen.append((dt, *values.tolist()))
-        while math.fsum(row[0] for row in self._seen) - self._seen[0][0] >= self._over:
-            self._seen.popleft()
+        self._span += _exact(dt)
+        while self._span - _exact(self._seen[0][0]) >= self._most:
+            self._span -= _exact(self._seen.popleft()[0])
 
     def value(self):
         if not self._seen:
@@ -83,6 +86,12 @@ class _Window:
 
     def restore(self, kept):
         self._seen = deque(tuple(row) for row in kept)
+        self._span = sum(_exact(row[0]) for row in self._seen)
+
+
+def _exact(time):
+    """A time, s, as a whole number of what every double above 1e-13 is a multiple of: sums have no rounding."""
+    return int(math.ldexp(time, _BITS))
 
 
 class _Lag:

@@ -43,8 +43,9 @@ class Levels:
         top, values, index = np.full(count, -np.inf), [np.zeros((0, 2))], [np.zeros(0, np.int64)]
         wet = s.near.fluid[p.surface[s.near.fluid] != DETACHED]
         wet = wet[np.argsort(p.x[wet], kind="stable")]
+        along = p.x[wet]
         for k, (x, y) in enumerate(self._places):
-            first, last = np.searchsorted(p.x[wet], (x - self._reach, x + self._reach))
+            first, last = np.searchsorted(along, (x - self._reach, x + self._reach))
             here = wet[first:last]
             across = 0.0 if self._flat else p.y[here] - y
             here = here[(p.x[here] - x) ** 2 + across**2 < self._reach**2]

@@ -16,7 +16,7 @@ class Openings:
     """One row: particles let in, let out, inside now; balance: those inside, less in, plus out and lost.
 
     The balance is what was there at the start, always. discharge_in is what is asked for, discharge_out the running
-    mean a depth before the outlet; clipped: share of the water beyond the outlet that was kept from coming back.
+    mean within half a depth of the outlet; clipped: share of the water beyond the outlet kept from coming back.
     """
 
     name = "openings"

@@ -223,7 +223,7 @@ class Recorder:
                 frame.append(points, dict(zip(_FIELDS, values, strict=True)))
 
     def finish(self, simulation: Simulation) -> None:
-        """Last frame and row if they are not written yet, then the account of the run."""
+        """Last frame if it is not written yet, then the account of the run; rows are at their times only."""
         if self.frames["water"][-1][1] < simulation.time:
             self._frame(simulation)
         self._close("done", simulation)
