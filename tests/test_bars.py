@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import subprocess
 import threading
 from dataclasses import replace
@@ -129,6 +130,13 @@ def test_misses_that_are_known_are_no_failure(made, tmp_path, capsys):
     assert runs.validate([], "quick", False, None, tables=(None, table)) == 0, "brought up to date, it is known"
     with pytest.raises(InputError, match=r"--known = .*nothing.csv: no such file"):
         runs.validate([], "quick", False, None, tables=(None, tmp_path / "nothing.csv"))
+
+
+def test_what_has_no_value_is_null_for_machines(made, capsys, monkeypatch):
+    monkeypatch.setitem(runs.MEASURES, "apex", lambda run, **more: math.nan)
+    assert runs.validate([], "quick", True, None) == runs.MISSED
+    rows = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert all(row["value"] is None and row["passed"] is False for row in rows)
 
 
 def test_cases_run_side_by_side_and_are_told_in_their_order(made, capsys, monkeypatch):

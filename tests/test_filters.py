@@ -96,6 +96,10 @@ def test_a_wrong_filter_is_told(wrong, said):
     assert said in str(error.value)
 
 
+def test_a_mean_over_no_time_is_the_last_value():
+    assert fed(Mean(kind="mean", over=1e-30).memory(), [1e-3] * 3, lambda time: time).value() == pytest.approx([3e-3])
+
+
 def test_a_mean_over_many_steps_costs_no_more_for_each():
     memory, began = Mean(kind="mean", over=1.0).memory(), clock.process_time()
     for _ in range(30000):

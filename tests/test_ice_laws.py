@@ -173,6 +173,7 @@ def test_no_file(tmp_path):
 @pytest.mark.parametrize(("table", "told"), [
     (Uniform(kind="uniform", min=0.3, max=0.2), "min = 0.3: must not be greater than max = 0.2"),
     (Power(kind="power", exponent=2.0, min=0.3, max=0.2), "must not be greater"),
+    (Power(kind="power", exponent=-20.0, min=1e-9, max=1e9), "is more than numbers hold"),
     (Ratio(kind="ratio", ratio=0.2, min=0.3, max=0.2), "must not be greater"),
     (Lognormal(kind="lognormal", median=0.1, sigma=0.1, min=0.5, max=0.6), "leave less than a millionth"),
     (Listed(kind="list", values=(0.1, 0.2), shares=(0.5, 0.4)), "their sum is 0.9; must be 1"),
@@ -194,3 +195,9 @@ def test_laws_reach_their_ends():
             assert all(a < b for a, b in pairwise(values))
             low, high = (EDGES[0], EDGES[-1]) if name == "histogram" else (table.min, table.max)
             assert (values[0], values[-1]) == pytest.approx((low, high))
+
+
+def test_limits_are_judged_by_the_dimensions():
+    """By area few are left of many in a plane, where floes cover a length, and next to none in 3D."""
+    law = Lognormal(kind="lognormal", median=0.08, sigma=2.5, min=0.06, max=0.1, weight="area")
+    assert list(law.faults(3)) and not list(law.faults(2))

@@ -1,6 +1,7 @@
 """Inlets and outlets: what comes in follows a formula, nothing is lost or doubled, and the level is that asked for."""
 
 import math
+import time as clock
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from flows import WOOD, simulation, tank
 
 from parsim.boundary.outlet import normal_depth
+from parsim.case.course import at_time
 from parsim.case.model import parse
 from parsim.errors import InputError
 
@@ -57,6 +59,19 @@ def test_a_discharge_by_a_table_of_times_comes_in():
     assert inlet.discharge == pytest.approx(0.06, abs=0.001)
     assert float(inlet.travel[inlet.awake].sum()) * 0.01 == pytest.approx(asked, rel=0.01)
     assert abs(inlet.emitted * volume - asked) < inlet.awake.sum() * volume
+
+
+def test_a_table_of_many_times_costs_no_more_at_each_step():
+    times = np.cumsum(np.random.default_rng(1).uniform(0.5, 1.5, 200000))
+    values = np.sin(times)
+    rows, asked = (
+        tuple(zip(times.tolist(), values.tolist(), strict=True)),
+        [-1.0, *times[:3], 7.3, 5e4, 9e4, times[-1], 1e9],
+    )
+    began = clock.process_time()
+    found = [at_time(rows, time) for _ in range(20) for time in asked]
+    assert clock.process_time() - began < 2.0, "4 s where all rows are made an array each time"
+    assert found == 20 * np.interp(asked, times, values).tolist()
 
 
 def test_emitted_particles_stand_where_the_formula_says():
@@ -111,6 +126,14 @@ def test_no_water_comes_in_where_something_fixed_stands():
         assert balance(s) == start and not s.domain.lost
     p, at = s.domain.particles, s.near.fluid
     assert p.x[at].min() > -0.005 and not ((p.x[at] < 0.295) & (p.z[at] < 0.035)).any(), "none gets under it"
+
+
+def test_a_wave_over_a_sill_is_let_out_by_the_depth_there():
+    sill = {"name": "sill", "shape": {"size": [0.3, 1.0, 0.04]}, "density": 2000.0, "position": [0.15, 0.5, 0.02]}
+    more = {"materials": WOOD, "bodies": [sill | {"material": "wood", "fixed": True}]}
+    inlet = simulation(reach({"absorb": 1.0}) | more).solids.openings.inlet
+    inlet.follow(0.101, 1.0, 1e-9)
+    assert 0.04 - inlet.discharge == pytest.approx(math.sqrt(9.81 * 0.06) * 0.001, rel=1e-3)
 
 
 def test_water_goes_on_beyond_the_outlet_and_not_back():
@@ -242,6 +265,12 @@ def test_a_wrong_opening_is_told(faces, said):
     with pytest.raises(InputError) as error:
         parse(given)
     assert said in str(error.value)
+
+
+def test_an_opening_without_gravity_is_told():
+    for up in (0.0, 9.81):
+        with pytest.raises(InputError, match=r"x_max.kind: gravity = .*: must go along -z beside an outlet"):
+            parse(reach(gravity=[0.0, 0.0, up]))
 
 
 def test_an_inlet_without_water_is_told():

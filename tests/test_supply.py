@@ -103,6 +103,16 @@ def test_floes_come_in_afloat_and_nothing_is_lost():
     assert 0.0 <= wanted - s.solids.openings.passage.queues[0].given < 0.1, "as much as was asked for, to a floe"
 
 
+def test_what_is_yet_before_the_inlet_covers_no_water():
+    given = reach(begins=0.05)
+    given["water"] |= {"friction": {"kind": "wall_law", "roughness": 0.001}, "eddies": {"kind": "mixing_length"}}
+    s = simulation(given)
+    while s.bodies.gone.all():
+        s.step()
+    front = s.bodies.position[0, 0] + s.bodies.shapes[0].half[0]
+    assert -0.02 < front < 0.0 and not s.solids.depths.covered.any()
+
+
 def test_a_supply_by_discharge_begins_and_ends():
     s = simulation(reach(concentration=None, discharge=[[0.0, 0.0], [0.2, 0.02]], begins=0.1, ends=0.3))
     queue = s.solids.openings.passage.queues[0]
@@ -133,11 +143,27 @@ def test_a_blocked_supply_waits_and_says_how_long():
     assert account["let_in"] == 0 and account["blocked"] > 0.05, "within the way in which it stops none begins to come"
 
 
+@pytest.mark.parametrize("supplied", [True, False])
+def test_no_water_comes_into_what_is_pushed_back_into_the_inlet(supplied):
+    """As a jam that has grown up to it may be."""
+    given = reach(bodies=[block(0.03, name="jam", fixed=False, position=[0.03, 0.5, "float"])], begins=0.9)
+    s = simulation(given if supplied else given | {"ice": {}})
+    b, inlet, (_, _, z) = s.bodies, s.solids.openings.inlet, s.bodies.position[0].copy()
+    while s.time < 0.15:
+        b.position[0, 2], b.quaternion[0], b.spin[0] = z, (1.0, 0.0, 0.0, 0.0), 0.0
+        b.velocity[0] = -0.2, 0.0, 0.0
+        s.step()
+    assert b.position[0, 0] < 0.01 and inlet.covered.sum() >= 3 and row(Counts, s)["in_bodies"] == 0
+    b.position[0, 0] = 0.1
+    s.solids.openings.passage.turn(s.time)
+    assert not inlet.covered.any()
+
+
 def test_what_passes_the_outlet_is_led_out_level():
     given = reach(
         bodies=[block(0.44, name="out", fixed=False, position=[0.44, 0.5, "float"], velocity=[0.5, 0.0, 0.0])]
     )
-    s = simulation(given | {"ice": {}})
+    s = simulation(given | {"ice": {}, "run": {"until": 1.0, "outside": "stop"}})
     b, tilt = s.bodies, []
     while s.time < 0.4 and not b.gone[0]:
         s.step()
@@ -258,6 +284,11 @@ def test_what_is_near_the_inlet_is_seen_at_the_level_of_now_and_across_sides_tha
     s.bodies.position[1] = 0.1, 0.17, 0.12
     seen = passage._seen(1)
     assert seen.row.tolist() == [1, 1] and seen.plan.cy == pytest.approx([0.17, -0.01])
+
+
+def test_thin_floes_are_told_of_once():
+    said = [warning for warning in parse(reach(thickness=0.03)).warnings() if "usable loads" in warning]
+    assert len(said) == 1 and said[0].startswith("ice.supplies.drift: ")
 
 
 WRONG = [

@@ -1,12 +1,14 @@
 """`parsim check --trial`: a case run for a while, to tell what the whole will take."""
 
 import re
+import subprocess
+import sys
 
 import pytest
 
 from parsim.__main__ import main
 from parsim.case.load import load
-from parsim.commands.trial import told
+from parsim.commands.trial import told, tried
 
 SMALL = ["cases/still_water/2d.toml", "--set", "spacing=0.02", "--set", "run.settle=0.0"]
 
@@ -24,6 +26,27 @@ def test_a_case_is_run_for_a_while_and_the_rest_told_by_that(capsys, tmp_path, m
 def test_one_that_ends_in_that_time_is_told_as_it_was(capsys):
     assert main(["check", *SMALL, "--until", "0.02", "--trial", "60"]) == 0
     assert re.search(r"trial +all \d+ steps took", capsys.readouterr().out)
+
+
+SLOW = """
+import json, pathlib, sys, time
+print("compiling the kernels: once per version, about a minute", flush=True)
+time.sleep(1.5)
+out = pathlib.Path(sys.argv[1])
+out.mkdir()
+(out / "run.json").write_text(json.dumps({"status": "stopped", "wall_s": 0.5}))
+print("t = 0.1 of 1 s", flush=True)
+time.sleep(60)
+"""
+
+
+def test_the_time_begins_with_the_steps_not_with_the_compiler(monkeypatch):
+    def popen(line, **how):
+        return began([sys.executable, "-c", SLOW, line[line.index("-o") + 1]], **how)
+
+    began = subprocess.Popen
+    monkeypatch.setattr(subprocess, "Popen", popen)
+    assert tried("case.toml", None, None, 1, 0.2)["status"] == "stopped"
 
 
 def test_core_hours_are_those_of_all_ranks():

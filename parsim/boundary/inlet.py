@@ -16,7 +16,7 @@ import numpy as np
 
 from parsim.boundary.wall_samples import lattice_axis
 from parsim.case.course import at_time
-from parsim.case.fill import water_at
+from parsim.case.openings import level_at_start
 from parsim.case.places import clearance
 from parsim.particles.lattice import lattice_of
 from parsim.particles.state import FLUID, INLET, Particles, make_id
@@ -52,8 +52,7 @@ class Inlet:
         self._area = l0 if case.dimensions == 2 else l0 * l0
         self._lag = _LAG * np.sqrt(case.depth / -case.gravity[2])
         self._id = sum(lattice_of(case, fill).size for fill in case.water.fill)
-        standing = water_at(case.water.fill, self.x + 0.5 * l0, 0.5 * (case.box.min[1] + case.box.max[1]))
-        self.level, self.discharge = standing[1] if standing else self._floor, 0.0
+        self.level, self.discharge = level_at_start(case), 0.0
         self._mean = self.level
         count = self._y.size
         self.travel, self.speed = np.zeros(count), np.zeros(count)
@@ -79,9 +78,11 @@ class Inlet:
         self._flow()
 
     def _give_way(self, level, dt):
-        """Let a wave out: dV = -sqrt(g / h) dh."""
-        depth, gravity = max(self._mean - self._floor, self._case.spacing), -self._case.gravity[2]
-        area = depth * self._case.width
+        """Let a wave out: dV = -sqrt(g / h) dh, with the depth over what stands there."""
+        over, gravity = self._mean - self._bottom.reshape(self._shape)[:, 0], -self._case.gravity[2]
+        wet = over > self._case.spacing
+        depth = float(over[wet].mean()) if wet.any() else self._case.spacing
+        area = depth * self._case.width * max(float(wet.mean()), 1.0 / wet.size)
         lag = _TRAVELS * depth / max(self.discharge / area, 0.1 * math.sqrt(gravity * depth))
         self._mean += min(dt / lag, 1.0) * (level - self._mean)
         gone = self._side.absorb * math.sqrt(gravity / depth) * (level - self._mean) * area

@@ -97,8 +97,7 @@ class Outlet:
             return at_time(side.level, time)
         flow = max(self.discharge, 0.0)
         if side.rating is not None:
-            flows, levels = np.array(side.rating).T
-            return float(np.interp(flow, flows, levels))
+            return at_time(side.rating, flow)
         return self._floor + normal_depth(flow, side.normal.manning, side.normal.slope, self._width, self._beside)
 
     def find(self, p: Particles, own: slice) -> None:

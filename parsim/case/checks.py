@@ -40,7 +40,8 @@ def checked(case, messages):
 
 def doubts(case):
     """What is allowed but doubtful: a list of messages, one for all bodies of one kind."""
-    thin, floes = {}, {body.name for field in case.ice.fields for body in ice.floes_of(case, field)}
+    drawn = *case.ice.fields, *case.ice.supplies  # of which `ice.doubts` tells
+    thin, floes = {}, {body.name for given in drawn for body in ice.floes_of(case, given)}
     for body in case.bodies if case.water.scheme.WET else ():
         if body.name not in floes and (across := bodies.particles_across(case, body)) < 4:
             thin.setdefault((across, bodies.thinnest(case, body)), []).append(body.name)

@@ -1,7 +1,9 @@
 """Quantities of a case that are constant or change with time: a number, rows of times and values, or a CSV file."""
 
+import bisect
 import csv
 import itertools
+import operator
 from typing import Annotated
 
 import numpy as np
@@ -15,10 +17,11 @@ Course = Number | Rows  # rows of time, s, and value: straight in between, const
 
 
 def at_time(course, time):
-    """The value of a `Course` at a time, s."""
+    """The value of a `Course` at a time, s; of other `Rows` at what they begin with."""
     if isinstance(course, float):
         return course
-    times, values = np.array(course).T
+    after = bisect.bisect_right(course, time, key=operator.itemgetter(0))  # asked for in every step, of many rows
+    times, values = np.array(course[max(after - 1, 0) : after + 1]).T
     return float(np.interp(time, times, values))
 
 

@@ -105,7 +105,7 @@ def with_floes(case):
     faults, fields, made, taken = ice_faults.names(case), [], [], None
     for given in case.ice.fields:
         try:
-            field, wrong = ice_faults.read(given)
+            field, wrong = ice_faults.read(given, case.dimensions)
             wrong = wrong or list(ice_faults.wrong(case, field))
             if not wrong and field.floes is None:
                 if taken is None:

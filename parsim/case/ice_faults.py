@@ -35,7 +35,7 @@ def names(case):
     ]
 
 
-def read(field):
+def read(field, dimensions):
     """(the field with what its files say, messages about its laws)."""
     update, wrong = {}, []
     for key in ("size", "thickness", "aspect"):
@@ -47,7 +47,7 @@ def read(field):
         except InputError as error:
             wrong += [f"{key}: {text}" for text in error.messages]
             continue
-        wrong += [f"{key}.{text}" for text in law.faults()]
+        wrong += [f"{key}.{text}" for text in law.faults(dimensions)]
         if key != "size" and getattr(law, "weight", None) == "area" and "weight" in law.model_fields_set:
             wrong.append(f'{key}.weight = "area": is for size, with which the area goes; must be "number"')
         elif key != "size" and hasattr(law, "weight"):

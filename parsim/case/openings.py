@@ -1,5 +1,6 @@
 """What may be wrong with inlet and outlet of a case."""
 
+import functools
 import itertools
 
 import numpy as np
@@ -24,6 +25,8 @@ def faults(case):
             found.append(f'box.faces.{name} = "{kind}": must be {_PLACE[kind]}; the water flows along x')
         elif kind in _PLACE and not (case.water.scheme.WET and case.water.fill):
             found.append(f'box.faces.{name} = "{kind}": there is no water, water.fill, to begin with')
+        elif kind in _PLACE and case.gravity[2] >= 0.0:
+            found.append(f"box.faces.{name}.kind: gravity = {list(case.gravity)}: must go along -z beside an {kind}")
         elif kind in _PLACE:
             found += [f"box.faces.{name}.{text}" for text in {"inlet": _inlet, "outlet": _outlet}[kind](case)]
     return found
@@ -105,6 +108,7 @@ def inlet_of(case):
             solid |= places.clearance(place, points) <= 0.0
     stands = np.minimum.accumulate(solid.reshape(y.size, z.size), axis=1).mean(axis=1) * case.box.size[2]
 
+    @functools.lru_cache
     def at(level):
         depth = np.maximum(level - low[2] - stands, 0.0)
         return float(depth.mean()) * case.width, float((depth > 0.0).mean()) * case.width, float(depth.max())

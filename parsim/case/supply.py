@@ -16,7 +16,7 @@ _UNDER = 2.0  # spacings of water under a floe as it comes in
 
 def read(case, given):
     """(a supply with what its files say, messages)."""
-    supply, wrong = ice_faults.read(given)
+    supply, wrong = ice_faults.read(given, case.dimensions)
     return supply, wrong or [*_wrong(case, supply)]
 
 

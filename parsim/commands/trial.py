@@ -14,6 +14,8 @@ from parsim.errors import InputError
 from parsim.output.reader import is_output
 from parsim.run.progress import duration
 
+_STEPS = "t = "  # in the first line of a log that comes with steps
+
 
 def tried(
     path: Path | str, changes: Iterable[str] | None, until: float | None, ranks: int, seconds: float
@@ -29,7 +31,8 @@ def tried(
         line = [sys.executable, "-P", "-m", "parsim", *map(str, words)]
         with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None
-            process.stdout.readline()  # the first line of a log comes with the first steps
+            while (said := process.stdout.readline()) and _STEPS not in said:
+                pass  # kernels may be compiled before
             try:
                 _, told = process.communicate(timeout=seconds)
             except subprocess.TimeoutExpired:

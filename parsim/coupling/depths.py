@@ -28,7 +28,7 @@ class Columns:
 
     def __init__(self, case: Case, bodies: Bodies) -> None:
         low, size, self._half = case.box.min, case.box.size, 0.5 * case.spacing
-        edge = _EDGE * case.spacing
+        edge, self._end = _EDGE * case.spacing, case.box.max[0]
         nx, ny = (max(math.ceil(size[a] / edge - 1e-9), 1) if a in case.axes else 1 for a in (0, 1))
         self._floor, count, friction = low[2], nx * ny, case.water.friction
         self._rub = friction is not None and friction.bodies
@@ -47,7 +47,8 @@ class Columns:
         water = np.zeros(len(p), bool)
         water[flow.near.fluid] = True
         water = water[own] & (p.surface[own] != DETACHED)
-        solid = (kind == BODY) & (p.image[own] == 0)
+        inside = (p.x[own] >= d.x) & (p.x[own] < self._end)  # not what is yet to come in, or goes out
+        solid = (kind == BODY) & (p.image[own] == 0) & inside
         ground = solid & self._ground[np.where(solid, body, 0)] if len(self._ground) else solid
         sets = (water, z + self._half), (ground, z + self._half), (solid & ~ground, self._half - z)
         for row, (which, height) in zip(found, sets, strict=True):

@@ -2,7 +2,8 @@
 
 A floe of a supply comes in from beyond the inlet at its draught, as fast as the surface of the water that comes in,
 which is left out where the floe is; once it is inside it is let go. It waits while another one is in its way, or where
-it is to come in: how long is a result. What floats over the outlet is led on with the water there until it is outside.
+it is to come in: how long is a result. Where a body is pushed back into the inlet no water comes in either. What floats
+over the outlet is led on with the water there until it is outside.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from parsim.case import supply
 from parsim.case.ice_faults import floes_of
+from parsim.case.openings import level_at_start
 from parsim.case.places import Place
 from parsim.case.plans import plan_of
 from parsim.geometry.faces import period
@@ -84,7 +86,7 @@ class Passage:
         self.queues = [_Queue(case, given) for given in case.ice.supplies]
         self._period = np.array(period(case))
         self._length = np.where(np.isfinite(self._period), self._period, 0.0)
-        self._level = supply.level_at_start(case)
+        self._level = level_at_start(case)
         driven = {joint.body for joint in case.joints}
         self._free = np.array([not body.fixed and body.name not in driven for body in case.bodies], bool)
         self._goal = np.zeros(len(bodies))  # of the speed of what is led, m/s
@@ -121,10 +123,16 @@ class Passage:
             leaving = beyond & self._free & ~b.gone
             b.lead[leaving & ~led] = np.maximum(b.velocity[leaving & ~led, 0], 0.0)
             self._goal[leaving] = self._outlet.speed
+        if not self._inlet:
+            return
+        tail = b.position[:, 0] - b.reaches()[:, 0]
+        back = np.flatnonzero(~b.fixed & ~b.gone & ~led & (tail < self._inlet.x)).tolist()  # where nothing leads it
         if not self.queues:
+            if back or self._inlet.covered.any():
+                self._inlet.cover([self._place(row) for row in back])
             return
         coming = np.flatnonzero(led & ~beyond)
-        through = b.position[coming, 0] - b.reaches()[coming, 0] >= self._inlet.x + _INSIDE * self._case.spacing
+        through = tail[coming] >= self._inlet.x + _INSIDE * self._case.spacing
         b.lead[coming[through]] = math.nan
         coming = coming[~through].tolist()
         due = [queue for queue in self.queues if queue.due] if time >= 0.0 else []
@@ -140,7 +148,7 @@ class Passage:
                 if not queue.waits:
                     coming.append(queue.rows[queue.next - 1])
                     near = near.joined(self._seen(coming[-1]))
-        self._inlet.cover([self._place(row) for row in coming])
+        self._inlet.cover([self._place(row) for row in coming + back])
 
     def _near(self):
         """What is there near the inlet at the height of floes that come in."""

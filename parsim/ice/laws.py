@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _SUM = 1e-3  # by which the sum of shares may be off one
+_DECADES = 300.0  # over which a power may go: doubles have 308
 _LEAST = 1e-6  # share of a law that its limits must leave
 
 
@@ -38,8 +39,8 @@ class LawTable(Table):
         """The same with what a file says. Raises InputError."""
         return self
 
-    def faults(self) -> Iterator[str]:
-        """What is wrong with it: messages that begin with the key."""
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
+        """What is wrong with it in a case of these dimensions: messages that begin with the key."""
         raise NotImplementedError
 
     def at(self, share: float, dimensions: int = 3) -> float:
@@ -57,7 +58,7 @@ class Listed(LawTable):
     values: tuple[Moderate, ...] = Field(description="values")
     shares: tuple[Share, ...] | None = Field(None, description="share of each, together 1; left out: the same of all")
 
-    def faults(self) -> Iterator[str]:
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
         """See `LawTable`."""
         if not self.values:
             yield "values = []: must be at least one"
@@ -76,7 +77,7 @@ class Uniform(LawTable):
     min: Moderate = Field(description="least value")
     max: Moderate = Field(description="largest value")
 
-    def faults(self) -> Iterator[str]:
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
         """See `LawTable`."""
         yield from _faults_of_limits(self.min, self.max)
 
@@ -92,9 +93,11 @@ class Power(LawTable):
     min: Moderate = Field(description="least value")
     max: Moderate = Field(description="largest value")
 
-    def faults(self) -> Iterator[str]:
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
         """See `LawTable`."""
         yield from _faults_of_limits(self.min, self.max)
+        if (abs(1.0 - self.exponent) + 2.0) * abs(math.log10(self.max / self.min)) > _DECADES:
+            yield f"exponent = {self.exponent!r}: from {self.min!r} to {self.max!r} is more than numbers hold"
 
     def _at(self, share: float, power: int) -> float:
         return _power_law(share, self.min, self.max, self.exponent + power)
@@ -109,10 +112,10 @@ class Lognormal(LawTable):
     min: Moderate = Field(description="least value")
     max: Moderate = Field(description="largest value")
 
-    def faults(self) -> Iterator[str]:
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
         """See `LawTable`."""
         yield from _faults_of_limits(self.min, self.max)
-        low, high = self._shares(2 * (self.weight == "area"))
+        low, high = self._shares((dimensions - 1) * (self.weight == "area"))
         if self.min <= self.max and high - low < _LEAST:
             yield (
                 f"min, max: {self.min!r} to {self.max!r} leave less than a millionth of what has the median "
@@ -163,7 +166,7 @@ class Histogram(LawTable):
             update={"file": None, "edges": tuple(values.tolist()), "shares": tuple(shares[1:].tolist())}
         )
 
-    def faults(self) -> Iterator[str]:
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
         """See `LawTable`."""
         if len(self.edges) < 2:
             yield f"file, edges: {'one end is' if self.edges else 'none is'} given; a class has two"
@@ -192,7 +195,7 @@ class Ratio(Table):
         """See `LawTable`."""
         return self
 
-    def faults(self) -> Iterator[str]:
+    def faults(self, dimensions: int = 3) -> Iterator[str]:
         """See `LawTable`."""
         if self.min is not None and self.max is not None:
             yield from _faults_of_limits(self.min, self.max)

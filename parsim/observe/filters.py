@@ -63,14 +63,14 @@ class Memory(Protocol):
 
 class _Window:
     def __init__(self, over):
-        self._over = over
+        self._over, self._most = over, max(_exact(over), 1)
         self._seen: deque[tuple[float, ...]] = deque()
         self._span = 0  # time of what is held, exact: whatever has come and gone, and on from a checkpoint
 
     def see(self, dt, values):
         self._seen.append((dt, *values.tolist()))
         self._span += _exact(dt)
-        while self._span - _exact(self._seen[0][0]) >= _exact(self._over):
+        while self._span - _exact(self._seen[0][0]) >= self._most:
             self._span -= _exact(self._seen.popleft()[0])
 
     def value(self):

@@ -144,7 +144,7 @@ class Simulation:
             numbers = near.fluid.size + near.boundary.size, near.fluid.size, len(domain.gone)
             self.active, self.fluid_count, gone = domain.count(*numbers)
         if gone or left:
-            self._note_gone(left)
+            self._note_gone(left, gone > 0)
         p, at = domain.particles, near.fluid
         self._start = np.stack([p.x[at], p.y[at], p.z[at]])
         self.moved, self._solid_moved, self.since = 0.0, 0.0, 0
@@ -175,14 +175,19 @@ class Simulation:
             for b, row in zip(at, rows, strict=True)
         ]
 
-    def _note_gone(self, left):
-        """Collect, on rank 0, what the last rebuild has found outside the box."""
+    def _note_gone(self, left, wet):
+        """Collect, on rank 0, what the last rebuild has found outside the box; `wet`: water too, of any rank."""
         p = self.domain.gone
         rows = np.concatenate([np.zeros((0, 7)), *self.comm.stream(np.stack([p.id, p.x, p.y, p.z, p.u, p.v, p.w], 1))])
         rows = left + [(self.step_count + 1, self.time, "water", *row) for row in rows[np.argsort(rows[:, 0])]]
         self.gone.extend(rows if self.comm.rank == 0 else ())
-        if self.case.run.outside == "stop":
+        if self.case.run.outside == "stop" and (wet or not all(map(self._went_out, left))):
             raise guards.outside(self, rows)
+
+    def _went_out(self, row):
+        """Whether a body that has left, a row of `gone`, has done so through the outlet, as it may."""
+        outlet = self.solids.openings.outlet
+        return outlet is not None and row[4] > outlet.x
 
     def _look(self):
         """Largest speed, and how far anything has moved since the lists were built."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -47,7 +48,7 @@ def validate(
         if not as_json:
             print(f"page: {told}")
     if as_json:
-        print(json.dumps(rows, indent=1))
+        print(json.dumps([_plain(row) for row in rows], indent=1))
     if any(row["value"] is None for row in rows):
         return 1
     missed = [row for row in rows if not row["passed"]]
@@ -113,6 +114,11 @@ def judged(bar: Bar, value: float | None, number: Published | None) -> dict[str,
         "bar": bar.within,
         "passed": error is not None and abs(error) <= bar.within,
     }
+
+
+def _plain(row: dict[str, Any]) -> dict[str, Any]:
+    """A row as JSON has it, which knows no nan."""
+    return {key: None if isinstance(cell, float) and not math.isfinite(cell) else cell for key, cell in row.items()}
 
 
 def told(row: dict[str, Any]) -> str:
