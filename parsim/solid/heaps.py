@@ -38,7 +38,7 @@ from parsim.solid.tanks import LAPSE, ROUNDING, ROUNDS, SHEAR, share_within
 from parsim.solid.tanks import NOW as HELD
 
 _LIFE = 40  # sub-steps that a list of what is near is to last
-_ROOM = 1e-3  # of the least radius, by which it reaches at least
+_ROOM = 1e-3  # of the radius of the first ball, by which it reaches at least
 _SMALL = 1e-3  # square of half an angle below which three terms give its sine and cosine to the last bit
 
 
