@@ -28,6 +28,8 @@ SMALL = {"case": cases.still_water(1000, 2.1), "warm": 1, "steps": 3}
 
 def pretended(order, ranks=1, threads=1, environment=None):
     """Figures of a machine that makes a million particle-steps a second, twice that on two cores, and half in 3.1."""
+    if "settle" in order:
+        return {"bodies": 10_000, "touching": 2.6, "substeps": 2000, "wall_s": 5.0, "rate": 4e6}
     speed = 1e6 * (0.5 if order["case"]["water"]["scheme"]["support"] > 3 else 1.0) * ranks * threads
     sweeps = {"momentum": 3.0, "continuity": 2.0, "listed": 1.4}
     return {
@@ -51,7 +53,7 @@ def pretended(order, ranks=1, threads=1, environment=None):
 
 @pytest.mark.parametrize("case", [
     cases.still_water(8000, 3.1), cases.sea(10_000, 3.1), cases.dam_break(0.005, 2.1, 1.0),
-    cases.dam_break(0.003, 3.1, 1.0, 0.3, 0.099), cases.floating_blocks(0.005, 3.1),
+    cases.dam_break(0.003, 3.1, 1.0, 0.3, 0.099), cases.floating_blocks(0.005, 3.1), cases.heap(4),
     *(model.trough(*size) for size in model.TROUGHS),
 ])  # fmt: skip
 def test_the_cases_are_valid(case):
@@ -66,6 +68,12 @@ def test_a_measurement_counts_what_it_ran(ranks):
     assert sum(found["phases"].values()) < found["wall_s"] and found["phases"]["momentum"] > 0
     assert found["uneven_most"] >= 1.0 and found["first_step"] > found["launched"]
     assert (found["halo"] > 0) == (ranks > 1)
+
+
+def test_a_heap_of_balls_is_measured_by_bodies_and_sub_steps():
+    found = account.measured({"case": cases.heap(4), "settle": 0.01, "steps": 3})
+    assert found["bodies"] == 80 and found["substeps"] >= 3
+    assert found["rate"] == pytest.approx(80 * found["substeps"] / found["wall_s"])
 
 
 def test_a_measurement_that_fails_says_why():
@@ -106,6 +114,7 @@ def test_the_account_holds_the_figures_and_tells_ratios_first(monkeypatch, capsy
     told = capsys.readouterr().out.splitlines()
     assert told[0].split("  ")[0] == "two ranks against one" and "1.000 of twice" in told[0]
     assert any(line.split() == ["momentum", "75.0", "75.0", "75.0"] for line in told), "shares of the step"
+    assert any("a heap of balls" in line and "4,000,000 bodies x sub-steps/s" in line for line in told)
     assert any("floating_blocks" in line and "500,000" in line and "1,000,000" in line for line in told)
 
 

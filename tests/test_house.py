@@ -34,7 +34,7 @@ REDUCTIONS = {
     "norm",
 }
 ROUNDED = {"pow", "power", "exp", "expm1", "log", "log1p", "log2", "log10", "sin", "cos", "tan", "tanh", "sinh", "cosh"}
-COMPILED = {"kernel", "each", "rows", "implements", "compiled"}
+COMPILED = {"kernel", "inlined", "each", "rows", "implements", "compiled"}
 STRICT = ("fluid/", "particles/", "coupling/")
 SEEN_ONLY = "fluid/wcmps/energy.py"  # goes into no step
 ABOVE_KERNELS = {"case", "commands", "launch", "observe", "output", "report", "run"}

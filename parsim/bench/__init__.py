@@ -43,6 +43,7 @@ def lines(found: dict[str, Any]) -> Iterator[str]:
 
 
 def _ratios(found):
+    heap = found["heap"]
     slowest, fastest = (pick(size["rate"] for size in found["sizes"]) for pick in (min, max))
     balance = found["balance"]
     for told, value in (
@@ -60,6 +61,10 @@ def _ratios(found):
         ),
         ("start to first step", f"{found['start_warm_s']:.1f} s, with empty caches {found['start_cold_s']:.0f} s"),
         ("slower sweep", f"{found['kernel_ns_per_pair']:.2f} ns per true pair"),
+        (
+            "a heap of balls",
+            f"{heap['rate']:,.0f} bodies x sub-steps/s; {heap['bodies']:,} with {heap['touching']:.1f} contacts",
+        ),
     ):
         yield f"{told:<32}{value}"
 

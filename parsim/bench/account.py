@@ -23,6 +23,7 @@ _MANY = 1_000_000
 _WORK = 3e6  # particle-steps of one measurement, about
 _CYCLE = 20  # steps: what is measured in still water is a whole number of rebuilds
 _TURNS = 3
+_EDGE, _SETTLED = 20, 0.9  # balls along a heap of 10,000, and s after which it is at rest
 _SPEED = 1.0  # m/s of the water that crosses the cut
 
 
@@ -55,6 +56,8 @@ def everything(tell: Callable[[str], object]) -> dict[str, Any]:
     ranks, threads = paired({"one": (1, 1), "ranks": (2, 1), "threads": (1, 2)})
     balance = {str(count): _balance(count, tell) for count in (2, 4)}
     sizes = [_size(count, tell) for count in SIZES]
+    tell("a heap of balls")
+    heap = measured({"case": cases.heap(_EDGE), "settle": _SETTLED, "steps": 10})
     tell("memory")
     memory = measured({"case": cases.still_water(_MANY, SUPPORTS[0]), "warm": 3, "steps": _CYCLE})
     lowest = {support: min(row[str(support)]["rate"] for row in table.values()) for support in SUPPORTS}
@@ -75,6 +78,7 @@ def everything(tell: Callable[[str], object]) -> dict[str, Any]:
         "cases": table,
         "balance": balance,
         "sizes": sizes,
+        "heap": heap,
     }
 
 

@@ -48,6 +48,24 @@ def floating_blocks(spacing: float, support: float) -> dict[str, Any]:
     return case
 
 
+def heap(edge: int) -> dict[str, Any]:
+    """Balls without water, `edge` x `edge` x 5/4 `edge` of them, that fall a little and come to rest as a heap."""
+    size, step = 0.05, 0.0506
+    count = [edge, edge, edge + edge // 4]
+    high = round(1.3 * count[2] * step, 9)
+    body = {"name": "ball", "shape": {"kind": "sphere", "diameter": size}, "density": 900.0, "material": "soft"}
+    lattice = {"count": count, "step": [step] * 3, "disorder": 0.005 * size}
+    return {
+        "dimensions": 3,
+        "box": {"max": [round(edge * step + 0.0004, 9)] * 2 + [high]},
+        "materials": {"soft": _WOOD | {"restitution": 0.3}},
+        "contacts": {"law": {"kind": "spring", "stiffness": 3e4}},
+        "bodies": [body | {"position": [0.5 * step] * 3, "repeat": lattice}],
+        "output": {"series": 0.1},
+        "run": {"until": 100.0},
+    }
+
+
 def _case(support, spacing, size, fill):
     return {
         "dimensions": 3,

@@ -1,8 +1,8 @@
 """One measurement of the benchmark, in a process or job of its own: an order as JSON in, figures as JSON out.
 
 The order holds `case` (a nested dict) and may hold `warm` (steps before the clock runs), `steps` or `until` (s) to
-run, `kernels` (time single sweeps too), `record` (write frames and series, at the intervals of the case) and `messages`
-(time nothing but messages).
+run, `kernels` (time single sweeps too), `record` (write frames and series, at the intervals of the case), `settle` (s
+of bodies alone before they are timed, and nothing else is) and `messages` (time nothing but messages).
 """
 
 import json
@@ -37,6 +37,8 @@ def measure(order: dict[str, Any]) -> dict[str, Any]:
         exercise(PARTS[0])  # machine code is in memory before the particles are
     before = _resident()
     simulation = Simulation(case, comm)
+    if "settle" in order:
+        return _bodies(simulation, order["settle"], order["steps"])
     with tempfile.TemporaryDirectory() as folder:
         recorder = _recorder(case, comm, simulation, folder) if order.get("record") else None
         _advance(simulation, recorder, max(order.get("warm", _WARM), 1))
@@ -57,6 +59,25 @@ def _recorder(case, comm, simulation, folder):
     recorder = Recorder(case, place)
     recorder.begin(simulation)
     return recorder
+
+
+def _bodies(simulation, settle, steps):
+    """Rate in bodies times sub-steps a second over some steps of bodies alone, after a time, s."""
+    while simulation.time < settle:
+        simulation.step()
+    began, substeps = time.perf_counter(), 0
+    for _ in range(steps):
+        simulation.step()
+        substeps += simulation.contacts.steps
+    wall, count = time.perf_counter() - began, len(simulation.bodies)
+    touching = simulation.contacts.count / count
+    return {
+        "bodies": count,
+        "touching": touching,
+        "substeps": substeps,
+        "wall_s": wall,
+        "rate": count * substeps / wall,
+    }
 
 
 def _advance(simulation, recorder, steps):

@@ -1,6 +1,6 @@
 """The kinds of Numba kernel.
 
-`kernel` is strict IEEE arithmetic, for sorting and for few elements.
+`kernel` is strict IEEE arithmetic, for sorting and for few elements; `inlined` is a part of one.
 `each` is the same, threaded over `prange`, for element-wise work on many particles.
 `rows` runs a `prange` over particles; inside one particle's neighbour loop the sum may be reordered for SIMD,
 which depends on nothing but that particle's own list.
@@ -27,6 +27,11 @@ FAST = {"reassoc", "nsz", "contract"}
 def kernel(function: Callable[..., Any]) -> Dispatcher:
     """Compile strict and cached, without threads."""
     return njit(function, cache=True, error_model="numpy", nogil=True)
+
+
+def inlined(function: Callable[..., Any]) -> Dispatcher:
+    """The same as `kernel`, made part of what calls it: a loop becomes vector code only where it calls nothing."""
+    return njit(function, cache=True, error_model="numpy", nogil=True, forceinline=True)
 
 
 def each(function: Callable[..., Any]) -> Dispatcher:

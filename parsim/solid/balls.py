@@ -5,7 +5,7 @@ The same laws as in `forces` and `substeps`, for what there is most of.
 
 import math
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.curves import spot_area
 from parsim.solid.element import friction_force, give_way, normal_force, rolling_torque
 from parsim.solid.faces import EXPECTED
@@ -47,7 +47,7 @@ def press_balls(m, touch, which, lapse, span):
     return touching
 
 
-@kernel
+@inlined
 def _gap(m, walls, pairs, shift, c):
     """(distance of pair `c`, unit normal towards ball a); endlessly far where its wall is not."""
     a, b = pairs[c, A], pairs[c, B]
@@ -63,19 +63,19 @@ def _gap(m, walls, pairs, shift, c):
     return (apart if there else math.inf), n
 
 
-@kernel
-def _radius(m, a, b):
-    """Radius, m, of ball a and ball b, or a wall, together."""
-    return m[a, HALF] * m[b, HALF] / (m[a, HALF] + m[b, HALF]) if b >= 0 else m[a, HALF]
+@inlined
+def radius_of_both(one, two):
+    """Radius, m, of balls of the radii `one` and `two`, m, together; `two` 0: of a wall."""
+    return one * two / (one + two) if two > 0.0 else one
 
 
-@kernel
+@inlined
 def _law(m, ab, deep, walls, law, number, planar):
     """(area, m2, radius, m, of what touches; force over area and depth; energy held over force times depth; damping
     ratio; friction; tangential over normal stiffness; rolling friction; crushing strength, Pa)."""
     a, b = ab
     one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
-    radius = _radius(m, a, b)
+    radius = radius_of_both(m[a, HALF], m[b, HALF] if b >= 0 else 0.0)
     bend = LINE if planar else SPOT
     area = spot_area((bend, radius), deep)
     rigid, held, more = stiffness(number, law[0, one, two], area, bend, radius, deep)
@@ -83,13 +83,13 @@ def _law(m, ab, deep, walls, law, number, planar):
     return area, radius, rigid, held, law[1, one, two], law[2, one, two], shear, law[4, one, two], law[5, one, two]
 
 
-@kernel
-def _lightness(m, a, b):
+@inlined
+def lightness(m, a, b):
     """1 / effective mass of two balls along their normal, 1/kg."""
     return m[a, LIGHT] + (m[b, LIGHT] if b >= 0 else 0.0)
 
 
-@kernel
+@inlined
 def _slip(m, a, b, n, arm):
     """Velocity (3,), m/s, and spin (3,) of ball a against b, or a wall, where they touch; arms along the normal, m."""
     v, w = three(m, a, VELOCITY), three(m, a, SPIN)
@@ -103,7 +103,7 @@ def _slip(m, a, b, n, arm):
     return (v[0] - u[0], v[1] - u[1], v[2] - u[2]), (w[0] - s[0], w[1] - s[1], w[2] - s[2])
 
 
-@kernel
+@inlined
 def _arms(m, a, b, deep):
     """How far along the normal the place of contact lies from the centres of a and b, m."""
     return 0.5 * deep - m[a, HALF], (m[b, HALF] - 0.5 * deep if b >= 0 else 0.0)
@@ -112,34 +112,62 @@ def _arms(m, a, b, deep):
 @kernel
 def _push(m, slot, tank, ab, n, law, now):
     """The law for one pair with its slot and its tank; `now`: depth, m, age of its springs and span of the kick, s."""
-    (a, b), (deep, age, span) = ab, now
-    area, radius, rigid, held, damping, mu, shear, rolling, strength = law
-    light, arm = _lightness(m, a, b), _arms(m, a, b, deep)
-    deep, slot[CRUSHED] = give_way(deep, slot[CRUSHED], strength / rigid)
-    v, spin = _slip(m, a, b, n, arm)
-    dashpot = 2.0 * damping * math.sqrt(rigid / (light * area) * (0.5 / held))
-    x, y, z = tank[LOADS], tank[LOADS + 1], tank[LOADS + 2]
-    springs = rigid * area * deep - (x * n[0] + y * n[1] + z * n[2])
-    dashpot /= 1.0 + 0.5 * span * dashpot * area * light
+    a, b = ab
+    light, arm = lightness(m, a, b), _arms(m, a, b, now[0])
+    deep, slot[CRUSHED] = give_way(now[0], slot[CRUSHED], law[8] / law[2])
+    now = deep, now[1], now[2]
     x, y, z = three(m, a, RUSH)
     if b >= 0:
         p, q, r = three(m, b, RUSH)
         x, y, z = x - p, y - q, z - r
-    ahead = 0.5 * span * (x * n[0] + y * n[1] + z * n[2] + light * springs)
-    speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2]
-    normal, elastic = normal_force(rigid, dashpot, area, deep, speed + ahead, strength)
+    before = tank[LOADS] * n[0] + tank[LOADS + 1] * n[1] + tank[LOADS + 2] * n[2]
+    ahead = before, x * n[0] + y * n[1] + z * n[2]
     s, roll = (slot[STRETCH], slot[STRETCH + 1], slot[STRETCH + 2]), (slot[ROLL], slot[ROLL + 1], slot[ROLL + 2])
-    slip, s, energy = friction_force(s, n, v, age, mu * normal, shear * rigid * area, math.sqrt(shear) * dashpot * area)
+    v, spin = _slip(m, a, b, n, arm)
+    normal, elastic, slip, s, energy = push_of_balls(law, n, v, light, ahead, s, now)
     turn = (0.0, 0.0, 0.0)
-    if rolling > 0.0:
-        share = 2.25 * rolling * rolling
-        stiff, drag = share * rigid * area, math.sqrt(share) * dashpot * area
-        turn, roll, more = rolling_torque(roll, n, spin, age, rolling * normal, radius, stiff, drag)
+    if law[7] > 0.0:
+        turn, roll, more = turn_of_balls(law, n, spin, light, normal, roll, now)
         energy += more
     for k in range(3):
         slot[STRETCH + k], slot[ROLL + k] = s[k], roll[k]
-    tank[NOW], tank[SHEAR] = energy + held * elastic * deep, energy
+    tank[NOW], tank[SHEAR] = energy + law[3] * elastic * now[0], energy
     _load(m, tank, ab, n, arm, ((normal, slip), turn, elastic))
+
+
+@inlined
+def dashpot_of_balls(law, light, span):
+    """Dashpot over area, N s/m3, of two balls for the `law` that they have; less in long kicks: see `forces._push`."""
+    area, _, rigid, held, damping, _, _, _, _ = law
+    dashpot = 2.0 * damping * math.sqrt(rigid / (light * area) * (0.5 / held))
+    return dashpot / (1.0 + 0.5 * span * dashpot * area * light)
+
+
+@inlined
+def push_of_balls(law, n, v, light, ahead, stretch, now):
+    """(normal force, its elastic part, N, friction (3,), N, new stretch (3,), m, energy in it, J) on ball a.
+
+    `law`: see `_law`; `v`: of a against b where they touch; `light`: 1 / effective mass; `ahead`: their force along the
+    normal and their acceleration along it at the kick before; `now`: depth, m, age of the stretch, span of the kick, s.
+    """
+    area, _, rigid, _, _, mu, shear, _, strength = law
+    (before, parting), (deep, age, span) = ahead, now
+    dashpot = dashpot_of_balls(law, light, span)
+    sooner = 0.5 * span * (parting + light * (rigid * area * deep - before))
+    speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2]
+    normal, elastic = normal_force(rigid, dashpot, area, deep, speed + sooner, strength)
+    stiff, drag = shear * rigid * area, math.sqrt(shear) * dashpot * area
+    slip, stretch, energy = friction_force(stretch, n, v, age, mu * normal, stiff, drag)
+    return normal, elastic, slip, stretch, energy
+
+
+@inlined
+def turn_of_balls(law, n, spin, light, normal, roll, now):
+    """(torque against rolling (3,), N m, its new spring (3,), m, energy in it, J) on ball a; see `push_of_balls`."""
+    area, radius, rigid, _, _, _, _, rolling, _ = law
+    share, dashpot = 2.25 * rolling * rolling, dashpot_of_balls(law, light, now[2])
+    stiff, drag = share * rigid * area, math.sqrt(share) * dashpot * area
+    return rolling_torque(roll, n, spin, now[1], rolling * normal, radius, stiff, drag)
 
 
 @kernel
@@ -179,20 +207,22 @@ def rate_balls(m, touch, which, steps):
         apart, n = _gap(m, touch.walls, pairs, touch.shift, c)
         if apart == math.inf:
             continue
-        square = _square(m, touch, a, b, max(EXPECTED * _radius(m, a, b), -apart))
+        square = _square(
+            m, touch, a, b, max(EXPECTED * radius_of_both(m[a, HALF], m[b, HALF] if b >= 0 else 0.0), -apart)
+        )
         many = steps[1] if apart < 0.0 and _calm(m, touch, a, b, -apart, n) else steps[0]
         add_rate(m, a, b, n, square * (many * many))
 
 
-@kernel
+@inlined
 def _square(m, touch, a, b, deep):
     """Square of the angular frequency, 1/s2, of two balls on each other at a depth."""
     law = _law(m, (a, b), deep, touch.walls, touch.pair_law, touch.law, touch.forms.planar)
     area, _, rigid, held, _, _, _, _, _ = law
-    return rigid * (1.0 / held - 1.0) * area * _lightness(m, a, b)
+    return rigid * (1.0 / held - 1.0) * area * lightness(m, a, b)
 
 
-@kernel
+@inlined
 def _calm(m, touch, a, b, deep, n):
     """Whether two balls lie at rest on each other; see `substeps._calm`."""
     square, light = _square(m, touch, a, b, deep), m[a, LIGHT]

@@ -13,7 +13,7 @@ from parsim.solid.handover import begin, finish
 from parsim.solid.hard import advance_hard
 from parsim.solid.kinetics import kinetic
 from parsim.solid.laws.pairs import law_of_pairs, thinnest
-from parsim.solid.nearby import near_pairs
+from parsim.solid.nearby import Beside
 from parsim.solid.points import deepest
 from parsim.solid.search import (
     ELEMENT,
@@ -64,6 +64,7 @@ class Contacts:
         self._first = np.append(first, np.full(len(self._driven), first[-1]))  # what is driven has none
         self._table = _table(bodies, cell, self._driven, material)
         self._forms = forms_of(bodies.shapes, bodies.planar, [plate.half for plate in self._driven])
+        self._beside = Beside()
         self._pairs, self._shift = room_for_pairs(64)
         self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
@@ -232,11 +233,11 @@ class Contacts:
         )
 
     def _list_pairs(self, planar, dt):
-        find = self._period, planar, dt, len(self.bodies)
-        number, reach = near_pairs(self._table, self._touch(), *find)
+        find = self._period, planar, len(self.bodies)
+        number, reach = self._beside.near_pairs(self._table, self._touch(), find, dt)
         if number > len(self._pairs):
             self._pairs, self._shift = room_for_pairs(2 * number)
-            number, reach = near_pairs(self._table, self._touch(), *find)
+            number, reach = self._beside.near_pairs(self._table, self._touch(), find, dt)
         if number > 1:
             sort_pairs(self._pairs, self._shift, number)
         if number > len(self._tanks):

@@ -5,10 +5,10 @@ Friction is a spring with memory (Cundall & Strack 1979), capped at mu times the
 
 import math
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined
 
 
-@kernel
+@inlined
 def normal_force(stiffness, dashpot, area, depth, speed, strength):
     """Normal force of one element, N, and its elastic part. `speed`: of parting, m/s; never pulls.
 
@@ -18,7 +18,7 @@ def normal_force(stiffness, dashpot, area, depth, speed, strength):
     return min(max(elastic - dashpot * area * speed, 0.0), strength * area), elastic
 
 
-@kernel
+@inlined
 def give_way(depth, crushed, least):
     """(elastic depth, depth crushed for good), m, of an element at `depth` of which `crushed` was already.
 
@@ -29,7 +29,7 @@ def give_way(depth, crushed, least):
     return (least, depth - least) if deep > least else (deep, crushed)
 
 
-@kernel
+@inlined
 def friction_force(stretch, n, v, lapse, limit, stiffness, dashpot):
     """(friction force, new stretch), two tuples of 3, and the elastic energy stored.
 
@@ -53,7 +53,7 @@ def friction_force(stretch, n, v, lapse, limit, stiffness, dashpot):
     return (fx, fy, fz), (sx, sy, sz), 0.5 * stiffness * length * length
 
 
-@kernel
+@inlined
 def rolling_torque(roll, n, spin, lapse, limit, radius, stiffness, dashpot):
     """(torque against rolling, N m, new spring, two tuples of 3, and the elastic energy stored).
 
@@ -70,7 +70,7 @@ def rolling_torque(roll, n, spin, lapse, limit, radius, stiffness, dashpot):
     return torque, roll, energy
 
 
-@kernel
+@inlined
 def _into_plane(s, n):
     """The vector `s` turned into the plane across the unit vector `n`, of unchanged length."""
     along = s[0] * n[0] + s[1] * n[1] + s[2] * n[2]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 
 _ALL = 3  # cells along a period below which it is one cell: a body would see the same one on both sides
 _NONE = -1
@@ -71,7 +71,7 @@ def _cell(x, width, period, many):
     return math.floor((x / period - math.floor(x / period)) * many) % many
 
 
-@kernel
+@inlined
 def _bucket(level, i, j, k, buckets):
     return ((i * 73856093) ^ (j * 19349663) ^ (k * 83492791) ^ (level * 15485863)) & (buckets - 1)
 
@@ -106,7 +106,7 @@ def near_of(grid, place, period, b, found):
     return count
 
 
-@kernel
+@inlined
 def _look(grid, k, cell, b, found, count):
     """Note the bodies in one cell of level `k`; the new count."""
     x, y, z = cell

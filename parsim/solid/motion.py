@@ -65,7 +65,7 @@ def drift(m, b, dt):
     if turns_freely(m, b):
         momentum = three(m, b, MOMENTUM)
         if momentum != (0.0, 0.0, 0.0):
-            _stand(m, b, free_turn(quaternion_of(m, b), momentum, three(m, b, INVERSE), dt))
+            stand(m, b, free_turn(quaternion_of(m, b), momentum, three(m, b, INVERSE), dt))
             _update_spin(m, b)
     else:
         _turn_guided(m, b, dt)
@@ -73,7 +73,7 @@ def drift(m, b, dt):
 
 
 @kernel
-def _stand(m, b, q):
+def stand(m, b, q):
     """Turn body `b` to the quaternion `q`."""
     t = matrix(q)
     for k in range(4):
@@ -93,9 +93,9 @@ def _turn_guided(m, b, dt):
     two = m[b, LIGHT] > 0.0 and m[b, FREE + 3] + m[b, FREE + 4] + m[b, FREE + 5] == 2.0
     if two:
         for _ in range(_MIDPOINTS):
-            _stand(m, b, unit(turned(turn_of(0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]), start)))
+            stand(m, b, unit(turned(turn_of(0.5 * dt * w[0], 0.5 * dt * w[1], 0.5 * dt * w[2]), start)))
             w = _guided_turn(m, b, h[0], h[1], h[2])
-    _stand(m, b, unit(turned(turn_of(dt * w[0], dt * w[1], dt * w[2]), start)))
+    stand(m, b, unit(turned(turn_of(dt * w[0], dt * w[1], dt * w[2]), start)))
     if two:
         m[b, SPIN], m[b, SPIN + 1], m[b, SPIN + 2] = _guided_turn(m, b, h[0], h[1], h[2])
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.grid import grid_of, near_of
 from parsim.solid.search import FEATURE, KEY, A, B, above
 from parsim.solid.separation import BALLS, ROUND_A, best_feature, gap_of_balls, is_ball
@@ -14,6 +14,7 @@ from parsim.solid.speeds import MARGIN, bound_of_speed
 from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TURN, shape_of, three
 
 _ROUNDING = 1e-9  # of the widest body
+_SKIN = 0.1  # of the least extent, by which more are listed than are within reach
 
 
 class Reach(NamedTuple):
@@ -25,31 +26,72 @@ class Reach(NamedTuple):
     planar: bool
 
 
-@kernel
-def near_pairs(m, touch, period, planar, dt, count):
-    """Find the pairs that may touch within `dt`, s, and mark their bodies as involved; (number, reach in m).
+class Beside:
+    """Bodies whose upright boxes were within reach, and more, of each other, kept until something may have come in.
 
-    `period` (3,), m, inf where nothing repeats; the bodies are the first `count` rows of the table. A number beyond the
-    room for pairs says how much is needed. A grid, then upright boxes, then separating axes. 3 us a ball, 50 a prism.
+    What is found does not depend on when they were listed: it is looked at anew each time.
     """
-    if count == 0:
-        return 0, 0.0
-    place, walls, ball = m[:count, POSITION : POSITION + 3], touch.walls, _balls(m)
-    extent, widest = _extents(m, touch.forms, ball)
-    far = 2.0 * MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest
-    near = Reach(period, extent, far, planar)
-    number, beside = 0, _beside(m, place, near)
+
+    def __init__(self):
+        self._listed = np.zeros((0, 2), np.int64)
+        self._seen, self._far = np.zeros((0, 7)), -math.inf
+
+    def near_pairs(self, m, touch, find, dt):
+        """See `near_pairs`; `find`: its period, planar and count."""
+        period, planar, count = find
+        far, seen = _reach(m, touch.forms, dt, count)
+        if count and not (len(seen) == len(self._seen) and far + 2.0 * _changed(seen, self._seen) <= self._far):
+            self._seen, self._far = seen, far + max(far, _SKIN * float(seen[:count, 3:6].max(axis=1).min()))
+            self._listed = _beside(m, Reach(period, seen[:, 3:6], self._far, planar), count)
+        if not count:
+            return 0, 0.0
+        return near_pairs(m, touch, self._listed, Reach(period, seen[:, 3:6], far, planar), count), far
+
+
+@kernel
+def _reach(m, forms, dt, count):
+    """(how far is looked for pairs, m; of all rows place, how far they reach along the axes, m, and whether they are
+    free, (rows, 7))."""
+    extent, widest = _extents(m, forms, _balls(m))
+    seen = np.empty((len(m), 7))
+    for b in range(len(m)):
+        for k in range(3):
+            seen[b, k], seen[b, 3 + k] = m[b, POSITION + k], extent[b, k]
+        seen[b, 6] = 1.0 if m[b, ROLE] > DRIVEN else 0.0
+    return (2.0 * MARGIN * dt * bound_of_speed(m, dt) + _ROUNDING * widest if count else 0.0), seen
+
+
+@kernel
+def _changed(seen, before):
+    """How far, m, the sides of any upright box have moved; endlessly where something has become free, or is no more."""
+    most = 0.0
+    for b in range(len(seen)):
+        for k in range(3):
+            most = max(most, abs(seen[b, k] - before[b, k]) + abs(seen[b, 3 + k] - before[b, 3 + k]))
+        if seen[b, 6] != before[b, 6]:
+            return math.inf
+    return most
+
+
+@kernel
+def near_pairs(m, touch, beside, near, count):
+    """Find the pairs that may touch among those `beside` each other, and mark their bodies as involved; how many.
+
+    The bodies are the first `count` rows of the table. A number beyond the room for pairs says how much is needed.
+    A grid, then upright boxes, then separating axes. 50 us a prism; 0.5 us a ball, 4 where all are listed anew.
+    """
+    far, walls, ball, number = near.reach, touch.walls, _balls(m), 0
     for k in range(len(beside)):  # balls apart from what takes long: a loop that calls much is slow where it does not
         a, b = beside[k, 0], beside[k, 1]
-        if ball[a] and ball[b]:
+        if ball[a] and ball[b] and _within(m, a, b, near):
             by = _image(m, a, b, near)
             if gap_of_balls(m, a, b, by)[0] <= far:
                 number = _note(m, touch.pairs, touch.shift, number, a, b, BALLS, by)
     for k in range(len(beside)):
         a, b = beside[k, 0], beside[k, 1]
-        if not (ball[a] and ball[b]):
+        if not (ball[a] and ball[b]) and _within(m, a, b, near):
             by = _image(m, a, b, near)
-            feature, distance = best_feature(m, touch.forms, a, b, by, planar)
+            feature, distance = best_feature(m, touch.forms, a, b, by, near.planar)
             if distance <= far:
                 number = _note(m, touch.pairs, touch.shift, number, a, b, feature, by)
     for a in range(count):
@@ -60,7 +102,7 @@ def near_pairs(m, touch, period, planar, dt, count):
                     feature = ROUND_A if touches_at_one_point(shape_of(m, a)) else 0
                     feature = BALLS if ball[a] else feature
                     number = _note(m, touch.pairs, touch.shift, number, a, -1 - w, feature, (0.0, 0.0, 0.0))
-    return number, far
+    return number
 
 
 @kernel
@@ -72,16 +114,17 @@ def _balls(m):
     return out
 
 
-@kernel
+@inlined
 def _height_of_ball(m, walls, a, w):
     x, y, z = three(m, a, POSITION)
     return walls[w, 0] * x + walls[w, 1] * y + walls[w, 2] * z - m[a, HALF] - walls[w, 3]
 
 
 @kernel
-def _beside(m, place, near):
+def _beside(m, near, count):
     """Bodies, and what is driven, whose upright boxes are within reach of each other: rows (n, 2), the less first."""
-    count, number, out, found = len(place), 0, np.empty((64, 2), np.int64), np.empty(64, np.int64)
+    place = m[:count, POSITION : POSITION + 3]
+    number, out, found = 0, np.empty((64, 2), np.int64), np.empty(64, np.int64)
     grid = grid_of(place, near.extent, near.reach, near.period)
     for a in range(count):
         others = near_of(grid, place, near.period, a, found)
@@ -103,7 +146,7 @@ def _beside(m, place, near):
     return out[:number]
 
 
-@kernel
+@inlined
 def _within(m, a, b, near):
     """Whether the upright boxes around two bodies are within reach of each other."""
     by = _image(m, a, b, near)
@@ -114,13 +157,13 @@ def _within(m, a, b, near):
     return True
 
 
-@kernel
+@inlined
 def _image(m, a, b, near):
     """How far the image of body b beside body a is moved, m."""
     return _moved(m, a, b, near, 0), _moved(m, a, b, near, 1), _moved(m, a, b, near, 2)
 
 
-@kernel
+@inlined
 def _moved(m, a, b, near, k):
     """The same along axis k; what is wider than half the period has no image."""
     if not near.extent[b, k] < 0.5 * near.period[k] < math.inf:

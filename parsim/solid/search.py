@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.geometry.rotation import to_body, to_global
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.separation import BALLS, ROUND_A, between, ramp_of, reach_along
 from parsim.solid.shapes.forms import Forms
 from parsim.solid.shapes.kernels import along_side
@@ -100,13 +100,13 @@ def fill_slots(m, touch, number, reach):
     return slot
 
 
-@kernel
+@inlined
 def _watched(m, touch, b):
     """How many points of body `b` are watched: its elements, and those that move along its curved side."""
     return touch.first[b + 1] - touch.first[b] + along_side(shape_of(m, b))
 
 
-@kernel
+@inlined
 def _mark(marks, slots, slot, key, element, index):
     if slot < len(marks):
         marks[slot, SLOT_KEY], marks[slot, ELEMENT], marks[slot, INDEX], marks[slot, TOUCHING] = key, element, index, 0

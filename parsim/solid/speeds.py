@@ -2,7 +2,7 @@
 
 import math
 
-from parsim.machine.jit import kernel
+from parsim.machine.jit import inlined, kernel
 from parsim.solid.table import GIVEN, HASTE, HELD, INVERSE, LIGHT, RADIUS, RATE, ROLE, SPIN, VELOCITY, three
 
 MARGIN = 1.5  # a body that is hit may become faster than any was before
@@ -38,7 +38,7 @@ def bound_of_speed(m, dt):
     return largest
 
 
-@kernel
+@inlined
 def add_rate(m, a, b, n, square):
     """Add to the RATE of the bodies of a pair, b < 0: a wall, what moves at the square of a frequency, 1/s2, along `n`.
 

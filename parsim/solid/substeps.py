@@ -5,6 +5,7 @@ import math
 from parsim.machine.jit import kernel
 from parsim.solid.balls import CALM, rate_balls
 from parsim.solid.forces import coefficients, compliance, free_time, hardness, press, relative_motion, velocity_at
+from parsim.solid.heaps import advance_heap, is_heap
 from parsim.solid.hollows import normal_by_elements
 from parsim.solid.islands import islands_of
 from parsim.solid.laws.foundation import FOUNDATION
@@ -64,6 +65,9 @@ def _advance(m, touch, island, dt, reach, steps_per_contact):
         lost += tanks[c, SHEAR]
     touching = press(m, touch, island, 0.0, 0.0)
     longest, on_springs = _longest(m, touch, island, steps_per_contact, reach)
+    if is_heap(m, touch, island):
+        touching, steps, heat = advance_heap(m, touch, island, dt, longest, touching)
+        return touching, steps, lost + heat, 0.0
     rest, pending, shear = dt, 0.0, 0.0
     while rest > 0.0:
         count = max(math.ceil(rest / longest), 1)

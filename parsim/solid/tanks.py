@@ -30,8 +30,8 @@ from parsim.solid.table import INVERSE, INVOLVED, LIGHT, LOAD, LOSS, MEAN, ROLE,
 STORED, LOST, SHEAR, LAPSE, BEFORE, NOW, SHEAR_BEFORE, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 8, 14
 SHARE, BEND, RADIUS, DEEP = 20, 21, 22, 23
 KEPT = 4  # columns, the first, that last from step to step
-_ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
-_ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
+ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
+ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
 def room_for_tanks(count):
@@ -95,10 +95,10 @@ def restrain(m, touch, which, rows, span):
             if tanks[c, NOW] == 0.0 or not _stirred(m, pairs[c, A], pairs[c, B], rounds):
                 continue
             tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
-            if tanks[c, WORK] > tanks[c, STORED] + _ROUNDING * own:
+            if tanks[c, WORK] > tanks[c, STORED] + ROUNDING * own:
                 over, share = True, 0.0
-                if rounds < _ROUNDS:
-                    share = _share(tanks[c, WORK], own, tanks[c, STORED])
+                if rounds < ROUNDS:
+                    share = share_within(tanks[c, WORK], own, tanks[c, STORED])
                 _apply(m, touch, c, share - 1.0)
                 _slacken(touch, c, share)
                 for b in (pairs[c, A], pairs[c, B]):
@@ -111,7 +111,7 @@ def restrain(m, touch, which, rows, span):
 @kernel
 def _stirred(m, a, b, rounds):
     """Whether the loads of a pair's bodies, or what they do, have changed since the round before."""
-    return rounds == 0 or m[a, STIRRED] == rounds or (b >= 0 and m[b, STIRRED] == rounds)
+    return m[a, STIRRED] >= rounds or (b >= 0 and m[b, STIRRED] >= rounds)
 
 
 @kernel
@@ -144,7 +144,7 @@ def _account(m, touch, which, span):
 
 
 @kernel
-def _share(work, own, stored):
+def share_within(work, own, stored):
     """Largest share of loads whose work is `stored`, as share (work - own) + share^2 own; all in J."""
     other = work - own
     root = math.sqrt(other * other + 4.0 * own * stored)
