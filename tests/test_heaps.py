@@ -56,7 +56,7 @@ def test_a_heap_goes_on_to_the_same_bits_whatever_was_listed_before():
         first.restore(kept)
     assert (one.position == two.position).all() and (one.quaternion == two.quaternion).all()
     assert (one.spin == two.spin).all() and whole.dissipated == first.dissipated
-    assert (whole.kept()["stretch"] == first.kept()["stretch"]).all()
+    assert (whole.kept()["memory"] == first.kept()["memory"]).all()
 
 
 def test_a_heap_makes_no_energy():
