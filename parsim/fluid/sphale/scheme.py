@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from parsim.fluid import shifting, surface
+from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.sphale import loads, sweeps, tables, updates
 from parsim.fluid.sphale.fields import ALL_SLOPES, FORCE, NORMAL, SHIFT, SLOPES
@@ -19,6 +19,7 @@ from parsim.geometry.faces import period
 from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE
 
+_BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
 _STAGES = {2: (0.5, 1.0), 3: (1.0 / 3.0, 0.5, 1.0)}  # how far from the start of the step each stage goes
 
 
@@ -38,6 +39,9 @@ class SPHALE:
         self._drag = 2.0 * (lattice.dimensions + 2.0) * water.viscosity * water.density
         self._least, self._even = choice.dissipation, choice.evening
         self._over = lattice.dimensions / (lattice.number * lattice.volume)
+        gravity = math.hypot(*case.gravity)
+        self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
+        self._recovery = 2.0 * choice.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self._endless = np.isfinite(period(case))
 
     def time_step(self, speed, acceleration=0.0):
@@ -98,6 +102,9 @@ class SPHALE:
                 step = (share * dt, *flow.gravity, flow.keep if share == 1.0 else 1.0)
                 updates.advance(near.fluid, before, _rates(p), p.vectors(SHIFT), step, p.kinematics, (p.omega, p.m))
             reached = share
+        if self._recovery > 0.0:
+            with self.timers("shifting"):
+                self._recover(p, near, dt)
         solids.advance(flow, time, dt)
 
     def _reconstruct(self, domain, near, constants, first):
@@ -126,6 +133,18 @@ class SPHALE:
         whole = shifting.Shifting(1.0 if self.shifting else 0.0, math.inf, 0.0, 0.0, 0.0, 0.0)
         shifting.shift(at, p.surface, normal, whole, frame, p.c)
         domain.refresh(*SHIFT)
+
+    def _recover(self, p, near, dt):
+        """Let volumes go back to the room that the arrangement of the particles leaves them: see `recovery.recover`."""
+        lattice, at = self.lattice, near.fluid
+        squares = lattice.radius**2, (_BESIDE * lattice.spacing) ** 2
+        pulled = recovery.Recovery(
+            *squares, 1.0, lattice.own, lattice.whole, lattice.cut, *self._down, self._recovery * dt
+        )
+        n = np.empty(len(p))
+        n[at] = lattice.volume / p.omega[at]
+        recovery.recover(at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, n)
+        p.omega[at] = lattice.volume / n[at]
 
     def _push(self, flow, solids, constants, step):
         """Push the bodies, whose samples get their accelerations and pressures, by what the water will get of them."""
