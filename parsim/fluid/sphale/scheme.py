@@ -20,6 +20,7 @@ from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE
 
 _BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
+_LONGEST_SHIFT = 0.1  # speed of it over the largest expected one: in jets of an impact it would throw particles out
 _STAGES = {2: (0.5, 1.0), 3: (1.0 / 3.0, 0.5, 1.0)}  # how far from the start of the step each stage goes
 
 
@@ -38,6 +39,7 @@ class SPHALE:
         self.cfl, self.shifting, self._stages = case.run.cfl, choice.shifting, _STAGES[choice.stages]
         self._drag = 2.0 * (lattice.dimensions + 2.0) * water.viscosity * water.density
         self._least, self._even = choice.dissipation, choice.evening
+        self._longest = _LONGEST_SHIFT * self.sound / choice.sound
         self._over = lattice.dimensions / (lattice.number * lattice.volume)
         gravity = math.hypot(*case.gravity)
         self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
@@ -117,7 +119,7 @@ class SPHALE:
         with self.timers("shifting"):
             marks = domain.near(SURFACE, "surface")
             surface.mark(near.fluid, near.lists, p.place, lattice.weight, marks, p.surface, normal)
-            whole = shifting.Shifting(1.0 if self.shifting else 0.0, math.inf, 0.0, 0.0, 0.0, 0.0)
+            whole = shifting.Shifting(1.0 if self.shifting else 0.0, self._longest, 0.0, 0.0, 0.0, 0.0)
             shifting.shift(near.fluid, p.surface, normal, whole, frame, p.c)
             if self._recovery > 0.0:
                 self._recover(p, near, dt)
