@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from parsim.fluid import shifting, surface
+from parsim.fluid import recovery, shifting, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.sphale import loads, sweeps, tables, updates
 from parsim.fluid.sphale.fields import ALL_SLOPES, FORCE, NORMAL, SHIFT, SLOPES
@@ -19,6 +19,8 @@ from parsim.geometry.faces import period
 from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE
 
+_BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
+_LONGEST_SHIFT = 0.1  # speed of it over the largest expected one: in jets of an impact it would throw particles out
 _STAGES = {2: (0.5, 1.0), 3: (1.0 / 3.0, 0.5, 1.0)}  # how far from the start of the step each stage goes
 
 
@@ -37,7 +39,11 @@ class SPHALE:
         self.cfl, self.shifting, self._stages = case.run.cfl, choice.shifting, _STAGES[choice.stages]
         self._drag = 2.0 * (lattice.dimensions + 2.0) * water.viscosity * water.density
         self._least, self._even = choice.dissipation, choice.evening
+        self._longest = _LONGEST_SHIFT * self.sound / choice.sound
         self._over = lattice.dimensions / (lattice.number * lattice.volume)
+        gravity = math.hypot(*case.gravity)
+        self._down = tuple(g / (gravity or 1.0) for g in case.gravity)
+        self._recovery = 2.0 * choice.recovery * math.sqrt(gravity / case.depth) if case.depth else 0.0
         self._endless = np.isfinite(period(case))
 
     def time_step(self, speed, acceleration=0.0):
@@ -83,6 +89,7 @@ class SPHALE:
         constants = self._constants(flow.gravity)
         with self.timers("bodies"):
             solids.normals(flow, p.vectors(NORMAL))
+        self._prepare(domain, near, constants, dt)
         before = np.stack([getattr(p, name)[near.fluid] for name in self.STATE])
         reached = 0.0
         for share in self._stages:
@@ -90,7 +97,7 @@ class SPHALE:
                 domain.refresh(*self.STATE)
                 with self.timers("bodies"):
                     solids.place(flow, time, reached * dt)
-            self._reconstruct(domain, near, constants, reached == 0.0)
+                self._reconstruct(domain, near, constants)
             if share == 1.0:
                 self._push(flow, solids, constants, (time, dt))
             self._flux(p, near, constants)
@@ -100,32 +107,54 @@ class SPHALE:
             reached = share
         solids.advance(flow, time, dt)
 
-    def _reconstruct(self, domain, near, constants, first):
-        """Pressures and slopes, halos with them; at the `first` stage the surface and the shift too."""
+    def _prepare(self, domain, near, constants, dt):
+        """At the start of a step: slopes, the surface, shift velocities, and volumes that have drifted."""
         p, lattice = domain.particles, self.lattice
-        with self.timers("move"):
-            updates.press(p.kind, p.omega, p.m, (self.density, self.stiffness), p.p)
-        around = tables.Around(p.c, p.vectors(NORMAL), p.vectors(SHIFT))
-        with self.timers("slopes"):
-            given = near.fluid, near.lists, _state(p), p.scale, lattice.weight, constants
-            sweeps.slopes(*given, _slopes(p), around if first else _unwanted(around))
-        if not first:
-            domain.refresh(*ALL_SLOPES)
-            return
+        normal, frame = p.vectors(NORMAL), p.vectors(SHIFT)
+        self._slope(p, near, constants, tables.Around(p.c, normal, frame))
         with self.timers("surface"):
             bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
-            surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
+            surface.classify(near.fluid, near.lists, p.place, p.c, bounds, p.surface, normal)
         domain.refresh(*ALL_SLOPES, *NORMAL, "surface")
         with self.timers("shifting"):
-            self._shift(domain, near)
+            marks = domain.near(SURFACE, "surface")
+            surface.mark(near.fluid, near.lists, p.place, lattice.weight, marks, p.surface, normal)
+            whole = shifting.Shifting(1.0 if self.shifting else 0.0, self._longest, 0.0, 0.0, 0.0, 0.0)
+            shifting.shift(near.fluid, p.surface, normal, whole, frame, p.c)
+            if self._recovery > 0.0:
+                self._recover(p, near, dt)
+        domain.refresh(*SHIFT, "omega")
+        self._press(p)
 
-    def _shift(self, domain, near):
+    def _recover(self, p, near, dt):
+        """Let volumes go back to the room that the arrangement of the particles leaves them: see `recovery.recover`."""
+        lattice, at = self.lattice, near.fluid
+        squares = lattice.radius**2, (_BESIDE * lattice.spacing) ** 2
+        pulled = recovery.Recovery(
+            *squares, 1.0, lattice.own, lattice.whole, lattice.cut, *self._down, self._recovery * dt
+        )
+        n = np.empty(len(p))
+        n[at] = lattice.volume / p.omega[at]
+        recovery.recover(at, near.lists, p.place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, n)
+        p.omega[at] = lattice.volume / n[at]
+
+    def _reconstruct(self, domain, near, constants):
+        """Pressures and slopes at a later stage, halos with them; all else stays as it was at the start of the step."""
         p = domain.particles
-        at, normal, frame = near.fluid, p.vectors(NORMAL), p.vectors(SHIFT)
-        surface.mark(at, near.lists, p.place, self.lattice.weight, domain.near(SURFACE, "surface"), p.surface, normal)
-        whole = shifting.Shifting(1.0 if self.shifting else 0.0, math.inf, 0.0, 0.0, 0.0, 0.0)
-        shifting.shift(at, p.surface, normal, whole, frame, p.c)
-        domain.refresh(*SHIFT)
+        spare = [np.empty(len(p)) for _ in range(7)]
+        around = tables.Around(spare[0], tables.Vectors(*spare[1:4]), tables.Vectors(*spare[4:]))
+        self._slope(p, near, constants, around)
+        domain.refresh(*ALL_SLOPES)
+
+    def _slope(self, p, near, constants, around):
+        self._press(p)
+        with self.timers("slopes"):
+            given = near.fluid, near.lists, _state(p), p.scale, self.lattice.weight, constants
+            sweeps.slopes(*given, _slopes(p), around)
+
+    def _press(self, p):
+        with self.timers("move"):
+            updates.press(p.kind, p.omega, p.m, (self.density, self.stiffness), p.p)
 
     def _push(self, flow, solids, constants, step):
         """Push the bodies, whose samples get their accelerations and pressures, by what the water will get of them."""
@@ -192,9 +221,3 @@ def _solid(p):
 
 def _rates(p):
     return tables.Rates(p.growth, p.gain, p.vectors(FORCE))
-
-
-def _unwanted(around):
-    """The same tables with room for what a later stage does not look at."""
-    spare = [np.empty_like(around.concentration) for _ in range(7)]
-    return tables.Around(spare[0], tables.Vectors(*spare[1:4]), tables.Vectors(*spare[4:]))

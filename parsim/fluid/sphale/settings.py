@@ -30,6 +30,9 @@ class Settings(Table):
     evening: Annotated[Real, Field(ge=0, le=0.2)] = Field(
         0.05, description="how fast neighbours swap water until their volumes are even, over the speed of sound"
     )
+    recovery: Share = Field(
+        0.1, description="rate at which volumes become those of the particles' arrangement, over 2 sqrt(g / depth)"
+    )
     shifting: Switch = Field(True, description="whether particles leave the water's velocity to stay evenly spread")
 
     @property

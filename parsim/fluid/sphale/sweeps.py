@@ -12,6 +12,7 @@ from parsim.fluid.sphale.riemann import interface, minmod, wall_pressure
 from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import kernel, prange, rows
 
+_FASTEST = 6.0  # times the mean speed of approach: a largest one, which is no sum, doubles the time of the sweep
 _THIN = 0.02  # determinant of the moments below which a slope is taken as it is: a splash
 
 
@@ -37,8 +38,8 @@ def times(matrix, x, y, z):
 def slopes(at, lists, state, scale, weight, constants, out, around):
     """Slopes of what is reconstructed (Robb et al. 2016, eq. 2, made exact for linear fields), and what is `around`.
 
-    `around.apart` receives the slope of the concentration times `spread`, at most 1/2, times the largest speed of
-    approach, m/s.
+    `around.apart` receives the slope of the concentration times `spread`, at most 1/2, times the speed at which the
+    neighbours approach, m/s.
     """
     start, middle, end, index = lists
     x, y, z = state.place
@@ -62,7 +63,7 @@ def slopes(at, lists, state, scale, weight, constants, out, around):
         cx, cy, cz = 0.0, 0.0, 0.0
         dx, dy, dz = 0.0, 0.0, 0.0
         ix, iy, iz, s = 0.0, 0.0, 0.0, own
-        kx, ky, kz, fastest = 0.0, 0.0, 0.0, 0.0
+        kx, ky, kz, nearing = 0.0, 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             ex, ey, ez = x[j] - xi, y[j] - yi, z[j] - zi
@@ -73,7 +74,7 @@ def slopes(at, lists, state, scale, weight, constants, out, around):
             s += measure
             ix, iy, iz = ix + g * ex, iy + g * ey, iz + g * ez
             approach = -inverse * (du * ex + dv * ey + dw * ez)
-            fastest = max(fastest, approach if g > 0.0 else 0.0)
+            nearing += measure * max(approach, 0.0)
             g *= over * omega[j]
             gx, gy, gz = g * ex, g * ey, g * ez
             mxx, mxy, mxz = mxx + gx * ex, mxy + gx * ey, mxz + gx * ez
@@ -91,7 +92,7 @@ def slopes(at, lists, state, scale, weight, constants, out, around):
             inverse = 1.0 / math.sqrt(r2)
             _, g, measure = weight_at(weight, r2, inverse)
             approach = -inverse * ((u[j] - ui) * ex + (v[j] - vi) * ey + (w[j] - wi) * ez)
-            fastest = max(fastest, approach if g > 0.0 else 0.0)
+            nearing += measure * scale[j] * max(approach, 0.0)
             g *= scale[j]
             s += measure * scale[j]
             ix, iy, iz = ix + g * ex, iy + g * ey, iz + g * ez
@@ -105,7 +106,7 @@ def slopes(at, lists, state, scale, weight, constants, out, around):
         concentration[i] = s / whole
         nx[i], ny[i], nz[i] = ix, iy, iz
         length = math.sqrt(kx * kx + ky * ky + kz * kz)
-        f = fastest * (spread if spread * length < 0.5 else 0.5 / length)
+        f = _FASTEST * nearing / s * (spread if spread * length < 0.5 else 0.5 / length)
         sx[i], sy[i], sz[i] = f * kx, f * ky, f * kz
 
 
