@@ -12,6 +12,8 @@ from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.state import INTERNAL, VICINITY
 
+_CLOSER = 0.02  # excess of concentration that is pushed apart in one go, at most: a start may have any
+_OPEN = 0.85  # of n0: less have only particles that see the air, though beside bodies none may look like a surface
 _SINGULAR = 0.05  # determinant over that of the lattice below which a gradient is not corrected
 
 
@@ -151,11 +153,13 @@ def assemble(at, lists, motion, state, weight, bodies, balance, equation):
             if body[j] >= 0 and dx * area[j, 0] + dy * area[j, 1] + dz * area[j, 2] < 0.0:
                 f = ax[j] * area[j, 0] + ay[j] * area[j, 1] + az[j] * area[j, 2]
                 swept += f * bare / max(n[j], wet)
-        closer = c[i] - 1.0
+        closer = min(c[i] - 1.0, _CLOSER)
         if surface[i] != INTERNAL:
             every += (below if surface[i] == VICINITY else top) * max(number - n[i], 0.0)
             closer = max(closer, 0.0)
             rises = 0.0
+        else:
+            every += top * max(_OPEN * number - n[i], 0.0)
         diagonal[i] = every + soft
         source = rate * (dt * volume * swept - half * opens) + still
         right[i] = soft * p[i] + relaxed * closer + share * source - rises
