@@ -14,6 +14,7 @@ from parsim.fluid.simps.solver import Solver
 from parsim.observe.energy import Energy
 from parsim.observe.solver import Solver as Seen
 from parsim.particles.state import INTERNAL, SURFACE, VICINITY
+from parsim.solid.acceleration import Given, accelerate_bodies, mobilities
 
 SPACING = 0.02
 BLOCKS = [{"name": name, "shape": {"size": [0.08, 1.0, 0.08]}, "density": density, "position": [x, 0.5, z],
@@ -195,3 +196,35 @@ def test_an_equation_that_is_not_solved_ends_the_run():
 def test_it_is_chosen_by_name_alone():
     case = parse(merged(still(), {"water": {"scheme": {"kind": "simps"}}}))
     assert case.water.scheme.kind == "simps" and case.water.scheme.faults(case) == []
+
+
+def test_bodies_give_way_as_they_are_accelerated():
+    """Free, locked along x, and on a rod: what a load adds to the accelerations that all loads make."""
+    rng, n = np.random.default_rng(5), 3
+    free, rod = np.ones((n, 6)), np.zeros((n, 3))
+    free[1, 0], rod[2] = 0.0, (0.0, 0.6, 0.8)
+    root = rng.normal(size=(n, 6, 6))
+    added = np.zeros((n, 24))
+    added[:, :21] = (root @ root.transpose(0, 2, 1))[:, *np.triu_indices(6)]
+    quaternion = rng.normal(size=(n, 4))
+    quaternion /= np.sqrt((quaternion**2).sum(1))[:, None]
+    bodies = Given(
+        rng.uniform(0.1, 1.0, n),
+        rng.uniform(0.1, 1.0, (n, 3)),
+        quaternion,
+        rng.normal(size=(n, 6)),
+        rng.normal(size=(n, 3)),
+        free,
+        np.zeros((n, 6)),
+        rod,
+        np.array([0.0, 0.0, 0.3]),
+    )
+    inverse, load, gravity = np.empty((n, 6, 6)), rng.normal(size=(n, 6)), np.array([0.0, 0.0, -9.81])
+    mobilities(added, bodies, inverse)
+    found = []
+    for more in (0.0, 1.0):
+        a, turn, change = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 6))
+        accelerate_bodies(more * load, added, bodies, gravity, a, turn, change)
+        found.append(np.hstack([a, turn]))
+    assert np.einsum("bac,bc->ba", inverse, load) == pytest.approx(found[1] - found[0], rel=1e-9, abs=1e-9)
+    assert inverse == pytest.approx(inverse.transpose(0, 2, 1), rel=1e-9, abs=1e-9)
