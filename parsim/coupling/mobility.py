@@ -18,8 +18,8 @@ _MOST = 8  # bodies that one particle of water may see; it pushes the first ones
 class Mobility:
     """Of all bodies in a step: `inverse` (bodies, 6, 6) is K.
 
-    `units` (6,) of exact sums of forces and torques. `at` (m,), `body` (m,), `rows` (m, 6): which water sees which body,
-    and J: force and torque, N and N m, of one Pa there. faces: `Sides`, weight, wetness (n,): see `sides.wet`.
+    `units` (6,) of exact sums of forces and torques. `at` (m,), `body` (m,), `rows` (m, 6): which water sees which
+    body, and J: force and torque, N and N m, of one Pa there. faces: `Sides`, weight, wetness (n,): see `sides.wet`.
     """
 
     def __init__(self, domain, near, beside, samples, centre, inverse, faces, units):

@@ -137,7 +137,9 @@ class Solids:
         pose, load, rims, inertia = self._found(flow, reaction, time, dt)
         self.films.keep(*rims)
         step = (time, dt)
-        self._load = self.samples.answer(flow.particles, flow.near, pose, load, inertia, reaction[1], step, flow.gravity)
+        self._load = self.samples.answer(
+            flow.particles, flow.near, pose, load, inertia, reaction[1], step, flow.gravity
+        )
 
     def sides(self, flow, weight, dt):
         """The `Sides` of the bodies at the middle of the step, whose wetness is noted in the field `n` of samples."""
@@ -163,7 +165,7 @@ class Solids:
         self.samples.place(flow.particles, *self.bodies.drifted(0.5 * dt))
 
     def _found(self, flow, reaction, time, dt):
-        """Pose at the middle of the step, loads, rims of the films, inertia that the water adds: see `samples.loads`."""
+        """Pose at the middle of the step, loads, films, inertia that the water adds: see `BodySamples.loads`."""
         domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
         force, _, response = reaction
         plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)

@@ -58,7 +58,7 @@ class Solids(Protocol):
         """
 
     def sides(self, flow, weight, dt):
-        """What bodies show of their surface in this step, a `sides.Sides`; the field `n` of samples: how wet they are."""
+        """What bodies show of their surface in this step, a `sides.Sides`; how wet it is goes to the field `n`."""
 
     def loosen(self, flow, reaction, faces, time, dt):
         """The same without the pressures of the water: how what they push gives way, a `Mobility`, None if nothing.

@@ -1,8 +1,8 @@
 """Semi-implicit MPS (Amaro et al. 2021, sec. 4.1): pressures by one equation for all water and the bodies in it.
 
-A step looks at the particles half way: viscosity, gravity and collisions predict velocities, the pressure equation
-finds what these lack to keep the volume of the water, with the accelerations that the same pressures give to bodies,
-and the gradient of the pressures corrects them. Only the flow limits the time step.
+A step looks at the particles half way: viscosity, friction, gravity and collisions predict velocities, the pressure
+equation finds what these lack to keep the volume of the water, with the accelerations that the same pressures give to
+bodies, and the gradient of the pressures corrects them. Only the flow limits the time step.
 """
 
 import math
@@ -13,7 +13,7 @@ from parsim.coupling.sides import press
 from parsim.fluid import friction, surface
 from parsim.fluid.reference import Lattice
 from parsim.fluid.simps import sweeps, tables
-from parsim.fluid.simps.fields import NORMAL, VISCOUS
+from parsim.fluid.simps.fields import NORMAL, STEEP, VISCOUS
 from parsim.fluid.simps.solver import Solver
 from parsim.fluid.wcmps.sweeps import boundary_pressure
 from parsim.fluid.wcmps.updates import drift, extremes, kick
@@ -47,7 +47,7 @@ class SIMPS:
         self._pairs = np.zeros(0)
 
     def time_step(self, speed, acceleration=0.0):
-        """Stable time step, s, at the largest speed, m/s (eq. 32), and acceleration, m/s2: nothing passes its neighbour."""
+        """Stable time step, s, at the largest speed, m/s (eq. 32), and acceleration, m/s2."""
         spacing = self.lattice.spacing
         limits = [self._courant * spacing / max(speed, self._slowest)]
         if acceleration > 0.0:
@@ -162,7 +162,7 @@ class SIMPS:
         )
         state = p.p, p.c, p.n, p.surface, p.scale
         swept = 1.0 / (self._laplacian * lattice.volume)
-        motion, bodies = (p.kinematics, p.acceleration), (p.body, sides.area, sides.least, swept)
+        motion, bodies = (p.kinematics, p.acceleration, p.vectors(STEEP)), (p.body, sides, swept)
         sweeps.assemble(near.fluid, near.lists, motion, state, lattice.weight, bodies, balance, equation)
         return equation, self.density * swept
 
@@ -188,7 +188,16 @@ class SIMPS:
         calm = self._choice.noise_damping / (dt * lattice.number**2)
         slope = tables.Slope(self._choice.least_pressure, self.density, even, planar, calm, *self._rise(flow))
         acceleration, fields = p.acceleration, (np.maximum(p.p, 0.0), p.scale, *p.vectors(VISCOUS))
-        sweeps.gradient(near.fluid, near.lists, p.place, acceleration, fields, lattice.weight, slope, acceleration)
+        sweeps.gradient(
+            near.fluid,
+            near.lists,
+            p.place,
+            acceleration,
+            fields,
+            lattice.weight,
+            slope,
+            (acceleration, p.vectors(STEEP)),
+        )
         kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)
 
 

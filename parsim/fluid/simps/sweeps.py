@@ -12,6 +12,8 @@ from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.state import INTERNAL, VICINITY
 
+_CLOSER = 0.02  # excess of concentration that is pushed apart in one go, at most: a start may have any
+_OPEN = 0.85  # of n0: less have only particles that see the air, though beside bodies none may look like a surface
 _SINGULAR = 0.05  # determinant over that of the lattice below which a gradient is not corrected
 
 
@@ -80,33 +82,55 @@ def predict(at, lists, kinematics, scale, weight, given, change, around):
         bx[i], by[i], bz[i] = lx, ly, lz
 
 
+@kernel
+def slopes(xx, xy, xz, yy, yz, zz, right, limits):
+    """The gradient (3,) of what has the sums `right` over the neighbours, by the inverse of the sum of e e W (eq. 18).
+
+    limits: determinant below which that is taken for the one of a full lattice, and its elements, n0 / d.
+    """
+    bx, by, bz = right
+    least, even = limits
+    cxx, cxy, cxz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    whole = xx * cxx + xy * cxy + xz * cxz
+    if not whole > least:
+        return bx / even, by / even, bz / even
+    cyy, cyz, czz = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    f = 1.0 / whole
+    return (
+        f * (cxx * bx + cxy * by + cxz * bz),
+        f * (cxy * bx + cyy * by + cyz * bz),
+        f * (cxz * bx + cyz * by + czz * bz),
+    )
+
+
 @rows
 def assemble(at, lists, motion, state, weight, bodies, balance, equation):
     """The pressure equation (eqs 14-15), times lambda n0 / (2 d), with all that is not pressure on its right.
 
-    Water: sum W (p_i - p_j) + kappa (n0 - n)+ p_i + soft p_i; right: minus the divergence over dt, what is compressed,
-    and what lies too close. kappa (n0 - n) stands for the water that is wanting at the surface, with the pressure that
-    mirrors it there, zero half a spacing above its first row. At walls and bodies, whose pressures are mirrored too,
-    what is left of sum W (p_i - p_j) is the divergence by the velocity that they have after dt without any pressure;
-    of bodies it is what their faces sweep, `coupling.sides`, and for their places the rise of water at rest, (3,), Pa/m.
-    Inside, where particles lie unevenly, the linear field of water at rest is no solution of that; what its sum wants
-    is added on the right. Without, still water loses a per cent of its level. motion: kinematics, acceleration; state:
-    p (n,), Pa, of the step before, concentration, sum of the weights (of samples: `sides.wet`), surface, scale;
-    bodies: number, area (n, 3), least weight before a wet face, 1 / (laplacian times the volume of a particle).
+    Left: sum W (p_i - p_j) + kappa (n0 - n)+ p_i + soft p_i over the water; kappa (n0 - n) stands for the water that is
+    wanting at the surface, with the pressure that mirrors it there, zero half a spacing above its first row. Right:
+    minus the change that the velocities make of n, over dt, walls and bodies with it; what walls and bodies at rest
+    have to hold, the rise of the pressure of water at rest; what the faces of bodies sweep by their accelerations
+    (`coupling.sides`); what is compressed; what lies too close. Inside, where particles lie unevenly, the sum over a
+    linear field is not zero as its Laplacian is: what the gradient of the step before makes of it is taken off, or
+    still water loses a per cent of its level. motion: kinematics, acceleration, that gradient; state: p (n,), Pa, of
+    the step before, concentration, n (of samples: `sides.wet`), surface, scale; bodies: number, `Sides`, 1 / (2 d /
+    (lambda n0) times the volume of a particle).
     """
     start, middle, end, index = lists.start, lists.middle, lists.end, lists.index
-    kinematics, acceleration = motion
+    kinematics, acceleration, (sx, sy, sz) = motion
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     ax, ay, az = acceleration
     p, c, n, surface, scale = state
-    body, area, least, swept = bodies
+    body, (area, _, wet), volume = bodies
     half, rate, soft, relaxed, number, top, below, dt, share, hx, hy, hz = balance
     pairs, diagonal, right = equation.pairs, equation.diagonal, equation.right
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi = x[i], y[i], z[i], u[i], v[i], w[i]
-        every, opens, rises, still = 0.0, 0.0, 0.0, 0.0
+        ex, ey, ez = sx[i], sy[i], sz[i]
+        every, opens, rises, still, swept = 0.0, 0.0, 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
@@ -114,33 +138,31 @@ def assemble(at, lists, motion, state, weight, bodies, balance, equation):
             wt, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
             pairs[t] = wt
             every += wt
-            rises += wt * (hx * dx + hy * dy + hz * dz)
+            rises += wt * (ex * dx + ey * dy + ez * dz)
             opens += g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
-        opens *= half
+        ui, vi, wi = ui - hx / rate, vi - hy / rate, wi - hz / rate
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[t]
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
-            wt, _, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
-            du, dv, dw = u[j] + dt * ax[j] - ui, v[j] + dt * ay[j] - vi, w[j] + dt * az[j] - wi
-            bare = wt
-            wt *= scale[j]
-            rise = wt * (hx * dx + hy * dy + hz * dz)
-            rises += rise
-            if body[j] < 0:
-                opens += wt * (du * dx + dv * dy + dw * dz)
-            else:
-                still += rise
-                if dx * area[j, 0] + dy * area[j, 1] + dz * area[j, 2] < 0.0:
-                    f = (du + hx / rate) * area[j, 0] + (dv + hy / rate) * area[j, 1] + (dw + hz / rate) * area[j, 2]
-                    opens -= swept * f * bare / max(n[j], least)
-        closer = c[i] - 1.0
+            bare, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
+            wt = scale[j] * bare
+            rises += wt * (ex * dx + ey * dy + ez * dz)
+            still += wt * (hx * dx + hy * dy + hz * dz)
+            opens += scale[j] * g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
+            if body[j] >= 0 and dx * area[j, 0] + dy * area[j, 1] + dz * area[j, 2] < 0.0:
+                f = ax[j] * area[j, 0] + ay[j] * area[j, 1] + az[j] * area[j, 2]
+                swept += f * bare / max(n[j], wet)
+        closer = min(c[i] - 1.0, _CLOSER)
         if surface[i] != INTERNAL:
             every += (below if surface[i] == VICINITY else top) * max(number - n[i], 0.0)
             closer = max(closer, 0.0)
             rises = 0.0
+        else:
+            every += top * max(_OPEN * number - n[i], 0.0)
         diagonal[i] = every + soft
-        right[i] = soft * p[i] + relaxed * closer - share * rate * opens + still - rises
+        source = rate * (dt * volume * swept - half * opens) + still
+        right[i] = soft * p[i] + relaxed * closer + share * source - rises
 
 
 @rows
@@ -156,37 +178,22 @@ def apply(at, lists, equation, values, out):
         out[i] = diagonal[i] * values[i] - s
 
 
-@kernel
-def solved(xx, xy, xz, yy, yz, zz, right, least):
-    """Solution (3,) of a symmetric 3x3 system, and whether its determinant is more than `least`."""
-    bx, by, bz = right
-    cxx, cxy, cxz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
-    whole = xx * cxx + xy * cxy + xz * cxz
-    if not whole > least:
-        return 0.0, 0.0, 0.0, False
-    cyy, cyz, czz = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
-    f = 1.0 / whole
-    return (
-        f * (cxx * bx + cxy * by + cxz * bz),
-        f * (cxy * bx + cyy * by + cyz * bz),
-        f * (cxz * bx + cyz * by + czz * bz),
-        True,
-    )
-
-
 @rows
 def gradient(at, lists, place, acceleration, fields, weight, slope, out):
     """Acceleration by the pressure of the fluid particles `at`: the gradient of first order (eq. 18) over -density.
 
-    It counts from p_i and by a share from the least pressure around instead, which pushes particles apart. Less `calm`
-    times the viscous sum of the viscous sums b of `predict`: what changes from particle to particle, which the equation
-    sees and this gradient does not quite undo, grows from step to step without. fields: p, scale, b (n,).
-    `acceleration` holds that of what is solid; `out` is the same.
+    The gradient itself is kept in out for the next step. It counts from p_i and by a share from the least pressure
+    around instead, which pushes particles apart. Less `calm` times the viscous sum of the viscous sums b of `predict`:
+    what changes from particle to particle, which the equation sees and this gradient does not quite undo, grows from
+    step to step without. fields: p, scale, b (n,). `acceleration` holds that of what is solid; out: the same, to be set
+    for the water, and the gradient.
     """
     start, middle, end, index = lists.start, lists.middle, lists.end, lists.index
     x, y, z = place
     ax, ay, az = acceleration
-    ox, oy, oz = out.x, out.y, out.z
+    change, steep = out
+    ox, oy, oz = change.x, change.y, change.z
+    kx, ky, kz = steep.x, steep.y, steep.z
     p, scale, bx, by, bz = fields
     least, density, even, planar, calm, hx, hy, hz = slope
     for row in prange(at.size):
@@ -231,9 +238,8 @@ def gradient(at, lists, place, acceleration, fields, weight, slope, out):
             xx, xy, xz, yy, yz, zz = xx + ex * dx, xy + ex * dy, xz + ex * dz, yy + ey * dy, yz + ey * dz, zz + ez * dz
         f = least * (pi - lowest)
         right = sx + f * mx, sy + f * my, sz + f * mz
-        sx, sy, sz, regular = solved(xx, xy, xz, yy, yz, zz, right, _SINGULAR * even * even * even)
-        if not regular:
-            sx, sy, sz = right[0] / even, right[1] / even, right[2] / even
+        sx, sy, sz = slopes(xx, xy, xz, yy, yz, zz, right, (_SINGULAR * even * even * even, even))
+        kx[i], ky[i], kz[i] = sx, sy, sz
         ox[i], oy[i], oz[i] = -sx / density - calm * lx, -sy / density - calm * ly, -sz / density - calm * lz
 
 

@@ -47,7 +47,7 @@ class Balance(NamedTuple):
 
 
 class Equation(NamedTuple):
-    """The pressure equation: weight of each listed pair (pairs,), diagonal (n,) and right-hand side (n,) by particle."""
+    """The pressure equation: weight of each listed pair (pairs,), diagonal and right-hand side by particle (n,)."""
 
     pairs: np.ndarray
     diagonal: np.ndarray

@@ -1,0 +1,23 @@
+"""The semi-implicit scheme gives the same bits on any number of ranks, and in two pieces as in one."""
+
+from pathlib import Path
+
+import parsim
+from parsim.__main__ import main
+
+CASE = Path(__file__).with_name("same_bits_simps.toml")
+WHOLE, PART = "0.02", "0.012"
+
+
+def test_same_bits(mpirun, tmp_path, capsys):
+    for ranks, out, until in ((1, "one", WHOLE), (3, "three", WHOLE), (2, "pieces", PART)):
+        done = mpirun(ranks, ["run", CASE, "-o", tmp_path / out, "--until", until], timeout=240)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert mpirun(1, ["resume", tmp_path / "pieces", "--until", WHOLE], timeout=240).returncode == 0
+    run = parsim.open(tmp_path / "one")
+    solver, bodies = run.series("solver"), run.series("bodies")
+    assert run.info["steps"] > 15 and run.info["rebuilds"] > 3 and min(solver["iterations"]) > 10
+    x = bodies["x"][bodies["body"] == "floating"]
+    assert max(x) - min(x) > 0.006, "nothing has crossed a cut"
+    for out in ("three", "pieces"):
+        assert main(["compare", str(tmp_path / "one"), str(tmp_path / out)]) == 0, capsys.readouterr().out
