@@ -171,6 +171,16 @@ def test_a_case_that_asks_for_nothing_has_no_such_section():
     assert section.parts(SimpleNamespace(run=run)) == "" and section.lines(run) == []
 
 
+def test_what_became_of_many_blocks_is_told_by_kind(covered, monkeypatch):
+    one = next(iter(blocks(covered).values()))
+    many = {f"b{k}": one._replace(name="stable" if k < 5 else "passed", critical=k >= 5) for k in range(20)}
+    monkeypatch.setattr(section, "blocks", lambda river: many)
+    told = section._blocks(covered)
+    assert told.count("<tr>") == 3 and "b7" not in told
+    assert '<td>passed</td><td>yes</td><td class="number">15</td>' in told
+    assert '<td>stable</td><td>no</td><td class="number">5</td>' in told
+
+
 def test_a_study_asks_for_jams_and_blocks(channel, covered):
     assert jam_forms(channel.run) is True and jam_holds(channel.run) is True
     assert block_goes_under(covered.run, "block") is True
@@ -189,7 +199,7 @@ def test_bars_ask_for_the_reach_and_the_jam(channel, covered):
     assert reach_most(channel.run, "jam_thickness") == pytest.approx(0.9 * 0.33 + 0.1 * 0.16, abs=0.03)
     assert jam_length(channel.run) == pytest.approx(8.7 - 6.81, abs=0.3)
     assert math.isnan(jam_length(covered.run))
-    with pytest.raises(InputError, match="quantity = 'rize': there is no such one; did you mean rise"):
+    with pytest.raises(InputError, match="name = 'rize': there is no such one; did you mean rise"):
         reach_mean(channel.run, "rize")
 
 

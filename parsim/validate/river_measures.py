@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from parsim.river.reader import River
 
 
-def reach_mean(run: Run, quantity: str) -> float:
-    """Mean of a quantity over the reach in the last window of a run, by its name in the table `reach`."""
+def reach_mean(run: Run, name: str) -> float:
+    """Mean of a quantity over the reach in the last window of a run, `name` in the table `reach`."""
     river, end = _ended(run)
-    return _of(river.reach_means(end), quantity)
+    return _of(river.reach_means(end), name)
 
 
-def reach_most(run: Run, quantity: str) -> float:
-    """Largest value of a quantity along the reach in the last window of a run, by its name in the table `river`."""
+def reach_most(run: Run, name: str) -> float:
+    """Largest value of a quantity along the reach in the last window of a run, `name` in the table `river`."""
     river, end = _ended(run)
-    here = _of(river.along(end), quantity)[river.within]
+    here = _of(river.along(end), name)[river.within]
     return float(np.nanmax(here)) if np.isfinite(here).any() else float("nan")
 
 
@@ -50,10 +50,10 @@ def _ended(run):
     return river, float(river.fields.time[-1])
 
 
-def _of(table, quantity):
-    if quantity not in table:
+def _of(table, name):
+    if name not in table:
         raise InputError(
-            f"quantity = {quantity!r}: there is no such one{suggestion(nearest(quantity, table))}; "
+            f"name = {name!r}: there is no such one{suggestion(nearest(name, table))}; "
             f"allowed: {', '.join(table)}"
         )
-    return table[quantity]
+    return table[name]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from parsim.errors import InputError
 from parsim.output.frames import write_text
-from parsim.report.measures import asked, columns, moments
+from parsim.report.measures import MANY, asked, columns, moments
 from parsim.report.page import listing, section, table
 from parsim.report.river import balance, long_section, pier_forces, plan, time_distance
 from parsim.river import tables
@@ -130,5 +131,11 @@ def _reach(river: River, ends: list[float]) -> str:
 
 
 def _blocks(river: River) -> str:
-    rows = [(name, b.name, b.tilt, "yes" if b.critical else "no") for name, b in blocks(river).items()]
+    found = blocks(river)
+    if len(found) >= MANY:
+        of = Counter((b.name, "yes" if b.critical else "no") for b in found.values())
+        return table(
+            ("what became of blocks", "critical", "blocks"), [(*kind, many) for kind, many in of.most_common()]
+        )
+    rows = [(name, b.name, b.tilt, "yes" if b.critical else "no") for name, b in found.items()]
     return table(("block", "what became of it", "largest tilt (degrees)", "critical"), rows)
