@@ -53,7 +53,6 @@ def _ended(run):
 def _of(table, name):
     if name not in table:
         raise InputError(
-            f"name = {name!r}: there is no such one{suggestion(nearest(name, table))}; "
-            f"allowed: {', '.join(table)}"
+            f"name = {name!r}: there is no such one{suggestion(nearest(name, table))}; allowed: {', '.join(table)}"
         )
     return table[name]
