@@ -79,7 +79,8 @@ def _scheme(dice, rubbing):
     given = {"weight": dice.choice(("wendland_c4", "wendland_c2")), "shifting": dice.random() < 0.8}
     if not rubbing and dice.random() < 0.6:
         return given | {"kind": "sphale", "stages": dice.choice((2, 3))}
-    return given | ({"weight": "mps"} if dice.random() < 0.3 else {})
+    # without shifting that weight flings what is squeezed under a body of less than two particles
+    return given | ({"weight": "mps", "shifting": True} if dice.random() < 0.3 else {})
 
 
 def _block(dice, number, width):
