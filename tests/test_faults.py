@@ -138,7 +138,7 @@ def disturbed(tmp_path, started):
 
 
 @pytest.mark.parametrize(("how", "rank", "said"), [
-    ("sleeps", 1, "rank 1 of 3 has made no progress for 20 s"),
+    pytest.param("sleeps", 1, "rank 1 of 3 has made no progress for 20 s", marks=pytest.mark.long),
     pytest.param("stops", 0, "rank 0 of 3 has made no progress for 20 s", marks=pytest.mark.slow),
     pytest.param("waits", 1, "has waited 60 s for a message", marks=pytest.mark.slow),
     ("raises", 1, "broken on purpose"),

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HERE = Path(__file__).parent
 OWN = ("weights", "exact", "contact_geometry", "neighbours", "bodies", "shapes", "sweeps")
 SLOW = (
@@ -13,6 +15,7 @@ SLOW = (
 LONG = " and ".join(f"not {word}" for word in SLOW.split())
 
 
+@pytest.mark.long
 def test_kernels_pass_their_tests_uncompiled():
     files = [HERE / f"test_{name}.py" for name in OWN]
     ran = subprocess.run(

@@ -115,6 +115,7 @@ def coarsest():
     return [path for _, path in found.values()]
 
 
+@pytest.mark.long
 def test_no_example_compiles_anything():
     paths = coarsest()
     wanted = [
