@@ -77,9 +77,7 @@ def run(
 
 @command
 def validate(
-    names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME]...", help="examples, or folders of them; left out: all")
-    ] = None,
+    names: given.Examples = None,
     level: Annotated[str, typer.Option(metavar="LEVEL", help="quick, or full: the long ones too")] = "quick",
     as_json: Annotated[bool, typer.Option("--json", help="print rows as JSON")] = False,
     out: given.KeptRuns = None,
@@ -87,8 +85,13 @@ def validate(
     ranks: given.RanksOfEach = 1,
     record: given.Record = None,
     known: given.Known = None,
+    scheme: given.Schemes = None,
 ) -> int:
     """Run examples and compare them with published and exact numbers; exit code 3 if a bar is missed."""
+    if scheme:
+        from parsim.validate.schemes import compare as compare_schemes
+
+        return compare_schemes(names or [], level, as_json, out, (jobs, ranks), (record, known), scheme)
     from parsim.validate.runs import validate as check
 
     return check(names or [], level, as_json, out, (jobs, ranks), (record, known))

@@ -58,6 +58,13 @@ Jobs = Annotated[int, typer.Option(min=1, metavar="N", help="runs side by side")
 Known = Annotated[
     Path | None, typer.Option(metavar="CSV", help="bars that this table of results has as missed may be missed again")
 ]
+Examples = Annotated[
+    list[str] | None, typer.Argument(metavar="[NAME]...", help="examples, or folders of them; left out: all")
+]
+Schemes = Annotated[
+    list[str] | None,
+    typer.Option("--scheme", metavar="KIND", help="run them by this scheme of the water; several stand side by side"),
+]
 Record = Annotated[Path | None, typer.Option("--record", metavar="CSV", help="bring this table of results up to date")]
 Slurm = Annotated[bool, typer.Option("--slurm", help="write the script of a Slurm array that makes the runs")]
 OfCase = Annotated[
