@@ -83,8 +83,7 @@ def _judged(each: list[Bar], out: Path | None, quiet: bool) -> Iterator[dict[str
 
 def _run(path: Path, out: Path, ranks: int) -> bool:
     words = ["resume", str(out), "--case", str(path)] if is_output(out) else ["run", str(path), "-o", str(out)]
-    words = [sys.executable, "-m", "parsim", *words, *(["-n", str(ranks)] if ranks > 1 else [])]
-    ran = subprocess.run(words, capture_output=True, text=True)
+    ran = ended(words, ranks)
     if ran.returncode:
         print(ran.stderr, file=sys.stderr)
     return ran.returncode == 0
@@ -114,6 +113,12 @@ def judged(bar: Bar, value: float | None, number: Published | None) -> dict[str,
         "bar": bar.within,
         "passed": error is not None and abs(error) <= bar.within,
     }
+
+
+def ended(words: list[str], ranks: int) -> subprocess.CompletedProcess[str]:
+    """A `parsim` with these words and on so many ranks that has come to its end."""
+    line = [sys.executable, "-m", "parsim", *words, *(["-n", str(ranks)] if ranks > 1 else [])]
+    return subprocess.run(line, capture_output=True, text=True)
 
 
 def _plain(row: dict[str, Any]) -> dict[str, Any]:

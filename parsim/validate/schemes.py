@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -23,7 +21,7 @@ from parsim.report.page import page, section, table
 from parsim.validate.bars import Bar, bars
 from parsim.validate.measures import MEASURES
 from parsim.validate.record import shown
-from parsim.validate.runs import judged
+from parsim.validate.runs import ended, judged
 
 REFUSED, FAILED = "refused", "failed"
 
@@ -81,8 +79,7 @@ def compare(
 def _told(path: Path, each: Sequence[Bar], kind: str, folder: Path, ranks: int) -> Told:
     out = folder / kind / f"{path.parent.name}-{path.stem}"
     words = ["run", str(path), "-o", str(out), "--force", "--set", f'water.scheme={{kind="{kind}"}}']
-    words += ["-n", str(ranks)] if ranks > 1 else []
-    ran = subprocess.run([sys.executable, "-m", "parsim", *words], capture_output=True, text=True)
+    ran = ended(words, ranks)
     if ran.returncode:
         said = ran.stderr.strip().rpartition("error: ")[2]
         return Told({}, REFUSED if ran.returncode == BAD_INPUT else FAILED, said)
