@@ -245,3 +245,37 @@ def test_a_bouncing_ball_follows_its_own_equation(steps, within):
         if len(apexes) == 4:
             break
     assert apexes == pytest.approx(_rebounds(4), rel=within)
+
+
+def oblique(theta, law, mu=0.092, e=0.98, radius=0.0025, speed=3.9):
+    """Spin after a hit at `theta`, degrees from the normal, over (1 + e) mu v_n / (2 R): Thornton's measure."""
+    a = math.radians(theta)
+    along, into = speed * math.sin(a), speed * math.cos(a)
+    shape = SphereShape(kind="sphere", diameter=2.0 * radius)
+    hit = Bodies([shape], [2.6e-4], [(0.5, 0.5, radius + 1e-6)], velocity=[(along, 0.0, -into)])
+    contacts = Contacts(hit, case(gravity=WEIGHTLESS, young=7e10, law=law, friction=mu, restitution=e, steps=80))
+    for _ in range(400):
+        go(hit, contacts, 1e-6, 1)
+        if hit.velocity[0, 2] > 0.0 and not contacts.count:
+            break
+    return -2.0 * radius * hit.spin[0, 1] / ((1.0 + e) * mu * into)
+
+
+THORNTON = [  # impact angle 2 tan(theta) / ((1 + e) mu) and spin of an elastic sphere (Vyas et al. 2021, digitised)
+    (0.284, -0.076), (0.977, -0.479), (1.806, -1.514), (2.748, -2.724), (3.677, -3.771),
+    (4.707, -4.620), (5.756, -5.012), (7.008, -4.989), (8.416, -5.009), (9.967, -4.996),
+]  # fmt: skip
+
+
+def test_a_ball_that_hits_obliquely_turns_as_thornton_says():
+    angles, spins = np.transpose(THORNTON)
+    turns = [oblique(math.degrees(math.atan(0.5 * angle * 1.98 * 0.092)), HERTZ) for angle in angles]
+    assert turns == pytest.approx(spins, abs=0.2)
+
+
+@pytest.mark.parametrize("law", [DEFAULT, HERTZ, SpringLaw(kind="spring", stiffness=2e8)], ids=lambda law: law.kind)
+def test_a_ball_that_hits_obliquely_slides_or_sticks(law):
+    """Chung & Ooi 2011, test 4: -5 where it slides all through; with less of an angle it turns less, smoothly."""
+    assert [oblique(theta, law) for theta in (35.0, 50.0, 65.0, 75.0)] == pytest.approx([-5.0] * 4, rel=0.01)
+    turns = np.array([oblique(theta, law) for theta in np.arange(2.0, 32.0, 3.0)])
+    assert (np.diff(turns) <= 0.01).all() and np.abs(np.diff(turns)).max() < 1.0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from clouds import PLAIN, cloud, lattice, listed
 
+from parsim.fluid import moves, tait, walls
 from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import sweeps, tables, updates
 from parsim.fluid.wcmps.fields import NORMAL, VISCOUS, isotropy
@@ -57,7 +58,7 @@ def row(p, near, i, part, weight):
 
 def test_seventh_roots_invert_the_state():
     y = np.array([0.0, 1e-6, 0.05, 0.7])
-    assert updates.seventh_roots(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
+    assert tait.seventh_roots(y) == pytest.approx((1 + y) ** (1 / 7), rel=4e-16)
 
 
 def test_the_half_step_moves_fluid_and_gives_it_the_pressure_of_the_state():
@@ -146,7 +147,7 @@ def test_boundary_pressure_sweep(mixed, weight):
     p.ax[near.boundary] = 0.5
     p.body[near.boundary[::2]] = 0
     pressure, sucked = p.p.copy(), [0, 0]
-    sweeps.boundary_pressure(
+    walls.boundary_pressure(
         near.boundary, near.lists, p.body, p.place, p.acceleration, WEIGHTS[weight].of_radius(RE), (*g, rho), pressure
     )
     acceleration = np.stack([p.ax, p.ay, p.az], 1)
@@ -184,7 +185,7 @@ def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
     found = []
     for more in (0.0 * change, change):
         a, pressure = np.tile(more[:, None], len(p)), p.p.copy()
-        sweeps.boundary_pressure(
+        walls.boundary_pressure(
             at, near.lists, p.body, p.place, Vectors(*a), of_radius, (0.0, 0.0, -9.0, 3.0), pressure
         )
         out, lever, response = reaction(p, near, of_radius, forces, a, pressure)
@@ -300,9 +301,9 @@ def test_gradient_and_divergence_are_of_second_order_on_a_lattice(weight):
 
 def test_extremes_tell_of_what_is_not_finite():
     start, zero, bad = np.zeros((3, 2)), np.zeros(2), np.array([0.0, math.nan])
-    assert updates.extremes(np.arange(2), Vectors(zero, bad, zero), Vectors(zero, zero, zero), start)[0] == math.inf
+    assert moves.extremes(np.arange(2), Vectors(zero, bad, zero), Vectors(zero, zero, zero), start)[0] == math.inf
     velocity, place = Vectors(zero + 2.0, zero, zero), Vectors(zero, zero + 3.0, zero)
-    assert updates.extremes(np.arange(2), velocity, place, start) == (4.0, 9.0)
+    assert moves.extremes(np.arange(2), velocity, place, start) == (4.0, 9.0)
 
 
 @pytest.mark.parametrize("strain", [[[0.1, 0.0, 0.0], [0.0, -0.05, 0.0], [0.0, 0.0, -0.05]],

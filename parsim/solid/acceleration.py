@@ -33,16 +33,11 @@ def accelerate_bodies(load, added, bodies, gravity, acceleration, angular, chang
     times that. By Cholesky, for its bits are the same everywhere.
     """
     mass, inertia, quaternion, contact, spin, free, given, rod, inwards = bodies
-    m, rhs, along = np.zeros((6, 6)), np.zeros(6), np.zeros(6)
-    water, unit = np.zeros((6, 6)), np.eye(3)
+    m, water, rhs, along = np.zeros((6, 6)), np.zeros((6, 6)), np.zeros(6), np.zeros(6)
     for b in range(mass.size):
         q = quaternion[b]
         turn, own = matrix((q[0], q[1], q[2], q[3])), (inertia[b, 0], inertia[b, 1], inertia[b, 2])
-        k = 0
-        for a in range(6):
-            for c in range(a, 6):
-                water[a, c] = water[c, a] = added[b, k]
-                k += 1
+        unpack(added[b], water)
         wx, wy, wz = spin[b]
         hx, hy, hz = scaled(turn, own, wx, wy, wz)
         gyro = (wy * hz - wz * hy, wz * hx - wx * hz, wx * hy - wy * hx)
@@ -50,30 +45,23 @@ def accelerate_bodies(load, added, bodies, gravity, acceleration, angular, chang
             total = load[b, a] + contact[b, a] + (mass[b] * gravity[a] if a < 3 else -gyro[a - 3])
             for c in range(6):
                 total += water[a, c] * (acceleration[b, c] if c < 3 else angular[b, c - 3])
-                m[a, c] = water[a, c]
             rhs[a] = total
-        for a in range(3):
-            m[a, a] += mass[b]
-            x, y, z = scaled(turn, own, unit[a, 0], unit[a, 1], unit[a, 2])
-            m[3, 3 + a], m[4, 3 + a], m[5, 3 + a] = m[3, 3 + a] + x, m[4, 3 + a] + y, m[5, 3 + a] + z
+        m[:] = water
+        add_inertia(mass[b], turn, own, m)
         for a in range(6):
             if free[b, a] == 0.0 and given[b, a] != 0.0:
                 for c in range(6):
                     rhs[c] -= m[c, a] * given[b, a]
         for a in range(6):
             if free[b, a] == 0.0:
-                m[a, :] = 0.0
-                m[:, a] = 0.0
-                m[a, a], rhs[a] = 1.0, given[b, a]
-        factor(m)
+                rhs[a] = given[b, a]
+        factor_held(m, free[b])
         solve(m, rhs)
-        if rod[b, 0] != 0.0 or rod[b, 1] != 0.0 or rod[b, 2] != 0.0:
-            for a in range(6):
-                along[a] = rod[b, a] * free[b, a] if a < 3 else 0.0
-            solve(m, along)
-            off, soft = inwards[b], 0.0
+        soft = yielding(m, rod[b], free[b], along)
+        if soft > 0.0:
+            off = inwards[b]
             for a in range(3):
-                off, soft = off + rod[b, a] * rhs[a], soft + rod[b, a] * along[a]
+                off += rod[b, a] * rhs[a]
             for a in range(6):
                 rhs[a] -= off / soft * along[a]
         for a in range(3):
@@ -91,41 +79,70 @@ def mobilities(added, bodies, out):
     Components that are given do not change, nor what is along a rod. `added` as there.
     """
     mass, inertia, quaternion, _, _, free, _, rod, _ = bodies
-    m, rhs, along, unit = np.zeros((6, 6)), np.zeros(6), np.zeros(6), np.eye(3)
+    m, rhs, along = np.zeros((6, 6)), np.zeros(6), np.zeros(6)
     for b in range(mass.size):
         q = quaternion[b]
-        turn, own = matrix((q[0], q[1], q[2], q[3])), (inertia[b, 0], inertia[b, 1], inertia[b, 2])
-        k = 0
-        for a in range(6):
-            for c in range(a, 6):
-                m[a, c] = m[c, a] = added[b, k]
-                k += 1
-        for a in range(3):
-            m[a, a] += mass[b]
-            x, y, z = scaled(turn, own, unit[a, 0], unit[a, 1], unit[a, 2])
-            m[3, 3 + a], m[4, 3 + a], m[5, 3 + a] = m[3, 3 + a] + x, m[4, 3 + a] + y, m[5, 3 + a] + z
-        for a in range(6):
-            if free[b, a] == 0.0:
-                m[a, :] = 0.0
-                m[:, a] = 0.0
-                m[a, a] = 1.0
-        factor(m)
-        tied, soft = rod[b, 0] != 0.0 or rod[b, 1] != 0.0 or rod[b, 2] != 0.0, 0.0
-        if tied:
-            for a in range(6):
-                along[a] = rod[b, a] * free[b, a] if a < 3 else 0.0
-            solve(m, along)
-            for a in range(3):
-                soft += rod[b, a] * along[a]
+        unpack(added[b], m)
+        add_inertia(mass[b], matrix((q[0], q[1], q[2], q[3])), (inertia[b, 0], inertia[b, 1], inertia[b, 2]), m)
+        factor_held(m, free[b])
+        soft = yielding(m, rod[b], free[b], along)
         for c in range(6):
             rhs[:] = 0.0
             rhs[c] = free[b, c]
             solve(m, rhs)
-            if tied:
+            if soft > 0.0:
                 off = rod[b, 0] * rhs[0] + rod[b, 1] * rhs[1] + rod[b, 2] * rhs[2]
                 for a in range(6):
                     rhs[a] -= off / soft * along[a]
             out[b, :, c] = rhs
+
+
+@kernel
+def unpack(packed, m):
+    """Fill m (6, 6), symmetric, with the rows (21,) of its upper half."""
+    k = 0
+    for a in range(6):
+        for c in range(a, 6):
+            m[a, c] = m[c, a] = packed[k]
+            k += 1
+
+
+@kernel
+def add_inertia(mass, turn, own, m):
+    """Add to m (6, 6) a body's mass, kg, and moments of inertia `own`, kg m2, that is turned by the matrix `turn`."""
+    unit = np.eye(3)
+    for a in range(3):
+        m[a, a] += mass
+        x, y, z = scaled(turn, own, unit[a, 0], unit[a, 1], unit[a, 2])
+        m[3, 3 + a], m[4, 3 + a], m[5, 3 + a] = m[3, 3 + a] + x, m[4, 3 + a] + y, m[5, 3 + a] + z
+
+
+@kernel
+def factor_held(m, free):
+    """`factor` of m (6, 6) in which components that are not `free` (6,) are uncoupled from the others."""
+    for a in range(6):
+        if free[a] == 0.0:
+            m[a, :] = 0.0
+            m[:, a] = 0.0
+            m[a, a] = 1.0
+    factor(m)
+
+
+@kernel
+def yielding(m, rod, free, along):
+    """Acceleration along the `rod` (3,) that a force of one along it gives, 1/kg; zero without one.
+
+    m: a factor; along (6,): all of the acceleration.
+    """
+    if rod[0] == 0.0 and rod[1] == 0.0 and rod[2] == 0.0:
+        return 0.0
+    soft = 0.0
+    for a in range(6):
+        along[a] = rod[a] * free[a] if a < 3 else 0.0
+    solve(m, along)
+    for a in range(3):
+        soft += rod[a] * along[a]
+    return soft
 
 
 @kernel

@@ -10,13 +10,11 @@ import math
 import numpy as np
 
 from parsim.coupling.sides import press
-from parsim.fluid import friction, surface
+from parsim.fluid import friction, moves, surface, walls
 from parsim.fluid.reference import Lattice
 from parsim.fluid.simps import sweeps, tables
 from parsim.fluid.simps.fields import NORMAL, STEEP, VISCOUS
 from parsim.fluid.simps.solver import Solver
-from parsim.fluid.wcmps.sweeps import boundary_pressure
-from parsim.fluid.wcmps.updates import drift, extremes, kick
 from parsim.geometry.faces import period
 from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE, VELOCITY
@@ -81,14 +79,14 @@ class SIMPS:
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
-        return [math.sqrt(e) for e in extremes(near.fluid, p.velocity, p.place, start)]
+        return [math.sqrt(e) for e in moves.extremes(near.fluid, p.velocity, p.place, start)]
 
     def step(self, flow, solids, time, dt):
         """One step: see the module. `STATE` is left to be refreshed."""
         p, near, domain = flow.particles, flow.near, flow.domain
         with self.timers("predict"):
             solids.place(flow, time, 0.5 * dt)
-            drift(p.kind, p.velocity, 0.5 * dt, p.place)
+            moves.drift(p.kind, p.velocity, 0.5 * dt, p.place)
             sides = solids.sides(flow, self.lattice.weight, dt)
             self._predict(flow, solids, dt)
         with self.timers("bodies"):
@@ -101,7 +99,7 @@ class SIMPS:
             if mobility:
                 solids.give_way(flow, mobility.accelerations(forces), dt)
             fall = (*(h / self.density for h in self._rise(flow)), self.density)
-            boundary_pressure(
+            walls.boundary_pressure(
                 near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight, fall, p.p
             )
             if solids.pushed():
@@ -112,7 +110,7 @@ class SIMPS:
             self._correct(flow, dt)
         solids.advance(flow, time, dt)
         with self.timers("move"):
-            drift(p.kind, p.velocity, 0.5 * dt, p.place)
+            moves.drift(p.kind, p.velocity, 0.5 * dt, p.place)
 
     def _rise(self, flow):
         """Rise of the pressure of water at rest, (3,), Pa/m; nothing rises along an axis that repeats."""
@@ -129,7 +127,7 @@ class SIMPS:
         sweeps.predict(at, lists, p.kinematics, p.scale, lattice.weight, given, p.acceleration, around)
         if rubbing := solids.rub(flow):
             friction.drag_water(at, lists, p.kinematics, self._smooth.weight, rubbing, 0.0, p.acceleration)
-        kick(at, flow.gravity, 1.0, dt, p.acceleration, p.velocity)
+        moves.kick(at, flow.gravity, 1.0, dt, p.acceleration, p.velocity)
         bounds = surface.Bounds(lattice.spacing, lattice.lowest, lattice.highest)
         surface.classify(at, lists, p.place, p.c, bounds, p.surface, p.vectors(NORMAL))
         domain.refresh(*VELOCITY, *NORMAL, *VISCOUS, "surface", "n")
@@ -198,7 +196,7 @@ class SIMPS:
             slope,
             (acceleration, p.vectors(STEEP)),
         )
-        kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)
+        moves.kick(near.fluid, (0.0, 0.0, 0.0), flow.keep, dt, acceleration, p.velocity)
 
 
 def _reaction(count):

@@ -9,12 +9,10 @@ import math
 
 import numpy as np
 
-from parsim.fluid import recovery, shifting, surface
+from parsim.fluid import moves, recovery, shifting, surface, tait, walls
 from parsim.fluid.reference import Lattice
 from parsim.fluid.sphale import loads, sweeps, tables, updates
 from parsim.fluid.sphale.fields import ALL_SLOPES, FORCE, NORMAL, SHIFT, SLOPES
-from parsim.fluid.wcmps.sweeps import boundary_pressure
-from parsim.fluid.wcmps.updates import extremes, seventh_roots
 from parsim.geometry.faces import period
 from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE
@@ -59,7 +57,7 @@ class SPHALE:
     def at_rest(self, pressure):
         """Fields of water at rest at pressures (n,), Pa >= 0: full volumes, mass by the inverse state."""
         omega = np.full(len(pressure), self.lattice.volume)
-        return {"omega": omega, "m": self.density * omega * seventh_roots(pressure / self.stiffness)}
+        return {"omega": omega, "m": self.density * omega * tait.seventh_roots(pressure / self.stiffness)}
 
     def compression(self, p, at):
         """Density of the particles `at` over that of the water at no pressure, (n,)."""
@@ -81,7 +79,7 @@ class SPHALE:
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's water, infinite when not finite, and largest distance from `start`, m."""
-        return [math.sqrt(e) for e in extremes(near.fluid, p.velocity, p.place, start)]
+        return [math.sqrt(e) for e in moves.extremes(near.fluid, p.velocity, p.place, start)]
 
     def step(self, flow, solids, time, dt):
         """One step: see the module. `STATE` is left to be refreshed."""
@@ -162,7 +160,7 @@ class SPHALE:
         with self.timers("boundary"):
             fall = (*flow.gravity, self.density)
             given = near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight
-            boundary_pressure(*given, fall, p.p)
+            walls.boundary_pressure(*given, fall, p.p)
         with self.timers("bodies"):
             if solids.pushed():
                 solids.push(flow, self._react(p, near, near.body, constants), time, dt)

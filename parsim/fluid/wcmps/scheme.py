@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from parsim.fluid import friction, recovery, shifting, surface, turbulence
+from parsim.fluid import friction, moves, recovery, shifting, surface, tait, turbulence, walls
 from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import energy, sweeps, tables, updates
 from parsim.fluid.wcmps.fields import ISOTROPY, NORMAL, TWICE_VISCOUS, VISCOUS, isotropy
@@ -83,7 +83,7 @@ class WCMPS:
 
     def at_rest(self, pressure):
         """Fields of water at rest at pressures (n,), Pa >= 0: its number density, by the inverse state."""
-        return {"n": self.lattice.number * updates.seventh_roots(pressure / self.stiffness)}
+        return {"n": self.lattice.number * tait.seventh_roots(pressure / self.stiffness)}
 
     def compression(self, p, at):
         """Density of the particles `at` over that of the water at no pressure, (n,)."""
@@ -122,7 +122,7 @@ class WCMPS:
         with self.timers("move"):
             if flow.turning:
                 flow.turning.push(p, near.fluid, flow.gravity, dt)
-            updates.kick(near.fluid, flow.gravity, flow.keep, dt, p.acceleration, p.velocity)
+            moves.kick(near.fluid, flow.gravity, flow.keep, dt, p.acceleration, p.velocity)
             solids.release(flow)
         solids.advance(flow, time, dt)
         self._finish(domain, near, dt, flow.speed)
@@ -137,7 +137,7 @@ class WCMPS:
         with self.timers("boundary"):
             fall, at = (*flow.gravity, self.density), near.boundary
             own = flow.turning.less(p) if flow.turning else p.acceleration
-            sweeps.boundary_pressure(at, near.lists, p.body, p.place, own, self.lattice.weight, fall, p.p)
+            walls.boundary_pressure(at, near.lists, p.body, p.place, own, self.lattice.weight, fall, p.p)
 
     def _accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
@@ -198,7 +198,7 @@ class WCMPS:
 
     def extremes(self, p, near, start):
         """Largest speed, m/s, of this rank's fluid (infinite when not finite) and largest distance from `start`, m."""
-        return [math.sqrt(e) for e in updates.extremes(near.fluid, p.velocity, p.place, start)]
+        return [math.sqrt(e) for e in moves.extremes(near.fluid, p.velocity, p.place, start)]
 
     def _finish(self, domain, near, dt, speed):
         """Positions to the full step, continuity there, damping, shifting."""
@@ -220,7 +220,7 @@ class WCMPS:
     def _drift(self, p, at, dt):
         with self.timers("move"):
             place, velocity = (Vectors(*(component[at] for component in which)) for which in (p.place, p.velocity))
-            updates.drift(p.kind[at], velocity, 0.5 * dt, place)
+            moves.drift(p.kind[at], velocity, 0.5 * dt, place)
 
     def _continuity(self, p, near, at, speed):
         lattice = self.lattice
@@ -260,7 +260,7 @@ class WCMPS:
         recovery.recover(at, lists, place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, p.n)
         shifted = shifting.Shifting(factor, _LONGEST_SHIFT * lattice.spacing, *self._down, n0 * self._steepness)
         shifting.shift(at, p.surface, p.vectors(NORMAL), shifted, _shifts(p), p.n)
-        updates.displace(at, _shifts(p), place)
+        moves.displace(at, _shifts(p), place)
 
     @property
     def _gradient(self):

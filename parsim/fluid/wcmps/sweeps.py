@@ -18,34 +18,6 @@ _PART, _FULL = 0.97, 0.99  # share of n0 that water and bodies fill from which a
 
 
 @rows
-def boundary_pressure(at, lists, body, place, acceleration, weight, fall, p):
-    """Pressure of boundary samples from the fluid they see (Adami, Hu & Adams 2012, eq. 27), by weights W / r2.
-
-    With the weights of the pressure force, what water adds to the inertia of a body is symmetric and never negative.
-    Walls do not pull, or water gets in; bodies do, or noise lifts them. `fall`: gravity, m/s2, by component, density.
-    """
-    start, middle, index = lists.start, lists.middle, lists.index
-    x, y, z = place
-    ax, ay, az = acceleration
-    gx, gy, gz, density = fall
-    for row in prange(at.size):
-        i = at[row]
-        xi, yi, zi = x[i], y[i], z[i]
-        every = 0.0
-        total = 0.0
-        hx, hy, hz = density * (gx - ax[i]), density * (gy - ay[i]), density * (gz - az[i])
-        for t in range(np.uint64(start[i]), np.uint64(middle[i])):
-            j = index[t]
-            dx, dy, dz = xi - x[j], yi - y[j], zi - z[j]
-            r2 = dx * dx + dy * dy + dz * dz
-            _, g, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
-            every += g
-            total += g * (p[j] + hx * dx + hy * dy + hz * dz)
-        mean = total / every if every > 0.0 else 0.0
-        p[i] = mean if body[i] >= 0 else max(mean, 0.0)
-
-
-@rows
 def momentum(at, lists, kinematics, pressures, weight, forces, acceleration, around):
     """Pair accelerations, concentration, inward normal and viscous sums of fluid particles.
 

@@ -1,8 +1,6 @@
-"""What a step does to each particle by itself: kicks, drifts, growth of n, state, and the largest speed and travel."""
+"""What a step does to each particle by itself: growth of n, state, damping."""
 
-import numpy as np
-
-from parsim.machine.jit import each, kernel, prange
+from parsim.machine.jit import each, prange
 from parsim.particles.state import DETACHED, FLUID
 
 
@@ -29,45 +27,6 @@ def predict(kind, surface, velocity, rate, state, place, n, p):
             p[i] = 0.0 if surface[i] == DETACHED else stiffness * (s2 * s2 * s2 * s - 1.0)
 
 
-@kernel
-def seventh_roots(y):
-    """Seventh roots of 1 + y, y (n,) >= 0 and small, by Newton: no pow, whose last bit depends on the library."""
-    out = np.empty(y.size)
-    for i in range(y.size):
-        s = 1.0 + y[i] / 7.0
-        for _ in range(4):
-            s2 = s * s
-            s6 = s2 * s2 * s2
-            s -= (s6 * s - 1.0 - y[i]) / (7.0 * s6)
-        out[i] = s
-    return out
-
-
-@each
-def kick(at, gravity, keep, dt, acceleration, velocity):
-    """Velocity of the particles `at` by their pair acceleration and gravity, times `keep` (1 but when settling)."""
-    gx, gy, gz = gravity
-    ax, ay, az = acceleration
-    u, v, w = velocity.x, velocity.y, velocity.z
-    for row in prange(at.size):
-        i = at[row]
-        u[i] = (u[i] + dt * (ax[i] + gx)) * keep
-        v[i] = (v[i] + dt * (ay[i] + gy)) * keep
-        w[i] = (w[i] + dt * (az[i] + gz)) * keep
-
-
-@each
-def drift(kind, velocity, dt, place):
-    """Positions of all fluid particles over dt at their velocity."""
-    u, v, w = velocity
-    x, y, z = place.x, place.y, place.z
-    for i in prange(x.size):
-        if kind[i] == FLUID:
-            x[i] += dt * u[i]
-            y[i] += dt * v[i]
-            z[i] += dt * w[i]
-
-
 @each
 def grow(at, rate, dt, n):
     """Number density of the particles `at` over dt at their relative rate."""
@@ -86,32 +45,3 @@ def damp(at, share, twice, velocity):
         u[i] -= share * ex[i]
         v[i] -= share * ey[i]
         w[i] -= share * ez[i]
-
-
-@each
-def displace(at, shift, place):
-    """Add the shifts of the particles `at`."""
-    sx, sy, sz = shift
-    x, y, z = place.x, place.y, place.z
-    for row in prange(at.size):
-        i = at[row]
-        x[i] += sx[i]
-        y[i] += sy[i]
-        z[i] += sz[i]
-
-
-@kernel
-def extremes(at, velocity, place, start):
-    """Largest speed and largest distance from `start` (3, n), both squared; infinite when a speed is not finite."""
-    u, v, w = velocity
-    x, y, z = place
-    fastest, farthest = 0.0, 0.0
-    for row in range(at.size):
-        i = at[row]
-        speed = u[i] * u[i] + v[i] * v[i] + w[i] * w[i]
-        if not speed < np.inf:
-            return np.inf, farthest
-        dx, dy, dz = x[i] - start[0, row], y[i] - start[1, row], z[i] - start[2, row]
-        fastest = max(fastest, speed)
-        farthest = max(farthest, dx * dx + dy * dy + dz * dz)
-    return fastest, farthest
