@@ -1,5 +1,6 @@
 """Bodies of any size, density, place and tilt, drawn at random: they start, and do what weight and water let them."""
 
+import itertools
 import math
 import random
 
@@ -9,7 +10,8 @@ from flows import simulation, tank
 from test_validate import told
 
 from parsim.case.places import Place, overlap, rotation
-from parsim.geometry.rotation import matrices
+from parsim.geometry.rotation import from_angles, matrices
+from parsim.solid.bodies import Bodies
 from parsim.solid.shapes import BoxShape
 
 GRAVITY, SPACING, DENSITY = 9.81, 0.01, 1000.0
@@ -137,21 +139,14 @@ def turned(body):
 
 
 def sunk_volume(bodies, level):
-    """Volume of each body below a level, m3; bodies turn about y only."""
-    volumes = []
-    for half, centre, axes, height in zip(
-        bodies.forms.half, bodies.position, matrices(bodies.quaternion), level, strict=True
-    ):
-        corners = [centre + axes @ (half * (i, 0.0, k)) for i, k in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        wet = []
-        for (x, _, z), (u, _, w) in zip(corners, corners[1:] + corners[:1], strict=True):
-            if z <= height:
-                wet.append((x, z))
-            if (z <= height) != (w <= height):
-                wet.append((x + (u - x) * (height - z) / (w - z), height))
-        area = sum(x * w - u * z for (x, z), (u, w) in zip(wet, wet[1:] + wet[:1], strict=True))
-        volumes.append(abs(area) * half[1])  # half the sum, times twice the half width
-    return np.array(volumes)
+    """Volume of each body, a box, below a level, m3: a sum over its corners (Scardovelli & Zaleski 2000)."""
+    up = np.maximum(np.abs(matrices(bodies.quaternion)[:, 2, :]), 1e-4)  # of a body's axes along z
+    reach = 2.0 * up * bodies.forms.half
+    deep = level - bodies.position[:, 2] + 0.5 * reach.sum(axis=1)
+    volumes = np.zeros(len(reach))
+    for corner in itertools.product((0, 1), repeat=3):
+        volumes += (-1) ** sum(corner) * np.maximum(deep - reach @ corner, 0.0) ** 3
+    return volumes / (6.0 * up.prod(axis=1))
 
 
 def on_decks(s, level):
@@ -222,3 +217,17 @@ def test_boxes_in_still_water_come_to_rest_at_their_draughts(seed):
     )
     assert np.abs(off).max() < 0.25 * s.case.spacing
     assert np.sqrt((speed**2).mean(axis=0)).max() < 0.05
+
+
+def test_the_volume_of_boxes_under_water_is_measured_well():
+    """Upright, upside down, on edge and on a corner, a quarter, half and all of their height deep."""
+    half = np.array([0.1, 0.2, 0.15])
+    boxes = Bodies([BoxShape(size=tuple(2.0 * half))] * 4, [1.0] * 4, np.zeros((4, 3)), quaternion=[
+        from_angles(angles) for angles in ((0.0, 0.0, 0.0), (180.0, 0.0, 0.0), (0.0, 45.0, 0.0), (35.0, 45.0, 10.0))
+    ])  # fmt: skip
+    whole, high = 8.0 * half.prod(), (np.abs(matrices(boxes.quaternion)[:, 2]) * half).sum(axis=1)
+    assert sunk_volume(boxes, 0.0 * high) == pytest.approx(0.5 * whole, rel=1e-4)
+    assert sunk_volume(boxes, high) == pytest.approx(whole, rel=1e-3)
+    assert sunk_volume(boxes, -0.5 * high)[:2] == pytest.approx(0.25 * whole, rel=1e-3)
+    low, up = sunk_volume(boxes, -0.3 * high), sunk_volume(boxes, 0.3 * high)
+    assert low + up == pytest.approx(whole, rel=1e-4)
