@@ -18,6 +18,7 @@ from parsim.output.frames import read_index
 
 MARK = "run.json"  # the first file that a run writes
 KINDS = ("water", "bodies")  # of frames
+WORDS = {"body", "filter", "gauge", "kind", "line", "patch", "probe", "section", "sensor", "what"}  # columns of text
 
 
 def open(folder: Path | str) -> Run:
@@ -38,7 +39,8 @@ def is_output(folder: Path) -> bool:
 
 def _refusal(folder):
     """Why a folder is no output, and which one was perhaps meant: one that holds it, one in it, one named like it."""
-    reason = f"holds neither {MARK} nor a checkpoint" if folder.is_dir() else "there is no such folder"
+    missing = "is a file" if folder.is_file() else "there is no such folder"
+    reason = f"holds neither {MARK} nor a checkpoint" if folder.is_dir() else missing
     beside = {path.parent.name: path.parent for path in folder.parent.glob(f"*/{MARK}")}
     related = [place for place in folder.parents if (place / MARK).is_file()]
     related += sorted(path.parent for path in folder.glob(f"*/{MARK}"))
@@ -133,7 +135,7 @@ class Run:
         """
         titles, rows = self._table(name)[1:]
         columns = zip(*rows, strict=True) if rows else [()] * len(titles)
-        return {title: _typed(values) for title, values in zip(titles, columns, strict=True)}
+        return {title: _typed(title, values) for title, values in zip(titles, columns, strict=True)}
 
     def units(self, name: str) -> dict[str, str]:
         """The unit of each column of a series, as a dict of texts. Raises InputError for a name there is not."""
@@ -193,8 +195,8 @@ def _arrays(group):
     return {name: values[:] for name, values in group.items()}
 
 
-def _typed(texts):
-    for kind in (np.int64, np.float64):
+def _typed(title, texts):
+    for kind in (np.int64, np.float64) if title not in WORDS else ():  # "inf" may be the name of a gauge
         try:
             return np.array(texts, dtype=kind) if len(texts) else np.zeros(0)
         except ValueError:

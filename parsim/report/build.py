@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from parsim.output.reader import Run
 
 DOTS = 110
+LARGEST = 2**15  # dots along a side: matplotlib draws no more than twice that
 
 
 class Page:
@@ -45,7 +46,7 @@ class Page:
         if drawn is None:
             return ""
         target = io.BytesIO()
-        drawn.savefig(target, format="png", dpi=DOTS)
+        drawn.savefig(target, format="png", dpi=min(DOTS, LARGEST / max(drawn.get_size_inches())))
         return self.keep(name, "png", target.getvalue(), alternative, caption)
 
 
@@ -58,7 +59,8 @@ def build(out: Path | str, vtk: bool = True) -> Path:
     work = Page(run, vtk)
     parts = [listing(summary(run)), *(each.parts(work) for each in SECTIONS)]
     path = work.folder / "index.html"
-    write_text(path, page(run.case.get("title", run.folder.name), f"parsim report of {run.folder.name}", parts))
+    name = run.folder.resolve().name  # "." has none
+    write_text(path, page(run.case.get("title") or name, f"parsim report of {name}", parts))
     return path
 
 
