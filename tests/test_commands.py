@@ -196,6 +196,9 @@ def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, caps
     assert "river.toml exists already" in capsys.readouterr().err
     assert (tmp_path / "river.toml").read_text() == "mine"
     assert main(["new", "no/such/river"]) == 74
+    assert [main(["new", name]) for name in ("", ".toml", "no/", "..")] == [2] * 4
+    assert "NAME = 'no/': is no name of a file" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["river.toml"]
 
 
 def test_an_example_is_found_by_name_anywhere_and_can_be_had_as_one_file(tmp_path, capsys, monkeypatch):
