@@ -20,6 +20,7 @@ from parsim.domain.comm import Comm
 from parsim.errors import InputError, WriteError
 from parsim.launch import mpirun as launch
 from parsim.run import warm
+from parsim.solid.shapes import CylinderShape, DiscShape, PolygonShape, PrismShape
 
 BLOCKS = ROOT / "cases" / "ice_release" / "4_blocks_dry.toml"
 LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK")
@@ -185,6 +186,21 @@ def test_estimate_of_a_small_tank_by_hand(tmp_path):
 def test_estimate_needs_no_room_for_what_it_counts():
     cost = estimate.estimate(load(BLOCKS, ["spacing=1e-6"]))
     assert cost.water > 1e15 and cost.body > 1e11
+
+
+@pytest.mark.parametrize("shape", [
+    PrismShape(kind="prism", points=[(0.0, 0.0), (0.3, 0.0), (0.0, 0.2)], height=0.15),
+    CylinderShape(kind="cylinder", diameter=0.3, height=0.2),
+    PolygonShape(kind="polygon", points=[(0.0, 0.0), (0.3, 0.0), (0.3, 0.2), (0.0, 0.2)]),
+    DiscShape(kind="disc", diameter=0.3),
+], ids=lambda shape: shape.kind)  # fmt: skip
+def test_a_vast_body_is_counted_by_its_surface(shape, monkeypatch):
+    for depth in (0.01, 1.0):
+        exact = shape.number_of_samples(0.005, depth, shape.FLAT)
+        monkeypatch.setattr("parsim.solid.shapes.shape._MOST", 0)
+        assert shape.number_of_samples(0.005, depth, shape.FLAT) == pytest.approx(exact, rel=0.15)
+        monkeypatch.undo()
+    assert shape.number_of_samples(1e-8, 3e-8, shape.FLAT) > (1e7 if shape.FLAT else 1e14)
 
 
 def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, capsys, monkeypatch):

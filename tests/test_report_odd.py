@@ -16,7 +16,7 @@ from parsim.errors import InputError
 from parsim.report import pictures, scene
 from parsim.report.build import LARGEST, Page, build
 from parsim.report.measures import MANY, published
-from parsim.report.sections import bodies, gauges, loads
+from parsim.report.sections import bodies, counts, gauges, loads
 
 HEAD = "case,block,quantity,low,high,model,unit,time,source\n"
 
@@ -151,3 +151,14 @@ def test_vtk_sees_a_tank_wherever_it_stands(folder):
     there = pictures._by_vtk(parsim.open(folder), views)
     for key, image in here.items():
         assert (there[key][..., 3] > 0.0).mean() == pytest.approx((image[..., 3] > 0.0).mean(), rel=0.05)
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_no_water_at_the_start_no_share_is_told(folder):
+    path = folder / "series/counts.csv"
+    head, *rows = (line.split(",") for line in path.read_text().split("\n")[1:-1])
+    rows[0][head.index("volume")] = "0.0"
+    path.write_text("# units\n" + "\n".join(map(",".join, [head, *rows])) + "\n")
+    run = parsim.open(folder)
+    assert counts.lines(run)[0].startswith("Particles at most 0 in walls")
+    assert counts.volume(run).axes[0].get_ylabel() == "volume (l)"
