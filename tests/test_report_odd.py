@@ -162,3 +162,22 @@ def test_of_no_water_at_the_start_no_share_is_told(folder):
     run = parsim.open(folder)
     assert counts.lines(run)[0].startswith("Particles at most 0 in walls")
     assert counts.volume(run).axes[0].get_ylabel() == "volume (l)"
+
+
+@pytest.mark.parametrize(("name", "text", "said"), [
+    ("case.toml", b"garbage = [", "cannot be read as the case of a run"),
+    ("case.toml", b"title = '\xe9'", "cannot be read as the case of a run"),
+    ("case.toml", None, "case.toml is gone"),
+    ("series/front.csv", b"", "has no line of units and names"),
+    ("series/front.csv", b"# units: -, s, m\nstep,time,x\n0,0.0,0.1\n1,0.1\n2,0.2,0.3\n", "line 4 has 2 values for 3"),
+    ("series/front.csv", b"# units: -, s, m\nstep,time,x\n0,0.0,0.1\n\0\0\0\xff\n", "line 4 has 1 values for 3"),
+    ("water.vtkhdf.series", b"{}", "cannot be read as an index of frames"),
+    ("water.vtkhdf.series", b"\xff", "cannot be read as an index of frames"),
+    ("bodies.vtkhdf.series", b'{"files": [3]}', "cannot be read as an index of frames"),
+])  # fmt: skip
+def test_a_damaged_output_is_told_with_the_remedy(folder, name, text, said):
+    (folder / name).unlink()
+    if text is not None:
+        (folder / name).write_bytes(text)
+    with pytest.raises(InputError, match=rf"{said}.*; `parsim resume`, of a run that is done"):
+        build(folder, vtk=False)

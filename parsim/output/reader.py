@@ -20,6 +20,8 @@ MARK = "run.json"  # the first file that a run writes
 KINDS = ("water", "bodies")  # of frames
 WORDS = {"body", "filter", "gauge", "kind", "line", "patch", "probe", "section", "sensor", "what"}  # columns of text
 
+MENDED = "`parsim resume`, of a run that is done with a later --until, writes it anew from the newest checkpoint on"
+
 
 def open(folder: Path | str) -> Run:
     """Open the output folder of a run and return a :class:`Run`.
@@ -68,9 +70,14 @@ class Run:
 
     @cached_property
     def case(self) -> dict[str, Any]:
-        """The completed case (case.toml) as a dict; empty when the run was stopped before writing it."""
+        """The completed case (case.toml) as a dict; empty when the run was stopped before writing it.
+
+        Raises InputError where it is damaged."""
         path = self.folder / "case.toml"
-        return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        try:
+            return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path}: cannot be read as the case of a run ({error}); {MENDED}") from None
 
     @cached_property
     def info(self) -> dict[str, Any]:
@@ -131,7 +138,8 @@ class Run:
     def series(self, name: str) -> dict[str, np.ndarray]:
         """One series as a dict of columns (rows,): int64, float64 or text. Units are in :meth:`units`.
 
-        A last row that a stopped run left unfinished is not read. Raises InputError for a name there is not.
+        A last row that a stopped run left unfinished is not read. Raises InputError for a name there is not, and for a
+        table that is damaged.
         """
         titles, rows = self._table(name)[1:]
         columns = zip(*rows, strict=True) if rows else [()] * len(titles)
@@ -163,7 +171,11 @@ class Run:
                 f"kind = {kind!r}: no such frames; must be {' or '.join(map(repr, KINDS))}"
                 + suggestion(nearest(str(kind), KINDS))
             )
-        return read_index(self.folder / f"{kind}.vtkhdf.series")
+        path = self.folder / f"{kind}.vtkhdf.series"
+        try:
+            return read_index(path)
+        except (OSError, ValueError, LookupError, TypeError):
+            raise InputError(f"{path}: cannot be read as an index of frames; {MENDED}") from None
 
     def _held(self, kind):
         """How many frames of a kind there are and of what times, in words."""
@@ -179,9 +191,14 @@ class Run:
                 + suggestion(nearest(str(name), self.series_names))
             )
         # what follows the last line end is a row that was being written
-        lines = path.read_text(encoding="utf-8").split("\n")[:-1]
+        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")[:-1]
+        if len(lines) < 2:
+            raise InputError(f"{path}: has no line of units and names of columns; {MENDED}")
         units = lines[0].removeprefix("# units: ").split(", ")
         titles, *rows = csv.reader(lines[1:])
+        for number, row in enumerate(rows, 3):
+            if len(row) != len(titles):
+                raise InputError(f"{path}: line {number} has {len(row)} values for {len(titles)} columns; {MENDED}")
         return units, titles, rows
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
+from parsim.errors import InputError
 from parsim.output.frames import replacing, write_text
+from parsim.output.reader import MENDED
 from parsim.output.reader import open as open_run
 from parsim.report.animation import chosen
 from parsim.report.measures import asked, moments
@@ -56,6 +58,8 @@ def build(out: Path | str, vtk: bool = True) -> Path:
     Raises InputError when ``out`` is no output folder, WriteError when the report cannot be written.
     """
     run = open_run(out)
+    if run.series_names and not run.case:
+        raise InputError(f"OUT = {run.folder}: its case.toml is gone; {MENDED}")
     work = Page(run, vtk)
     parts = [listing(summary(run)), *(each.parts(work) for each in SECTIONS)]
     path = work.folder / "index.html"
