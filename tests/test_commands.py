@@ -103,6 +103,8 @@ def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
 def test_n_checks_the_case_first_and_is_refused_inside_a_job(capsys, monkeypatch):
     monkeypatch.setattr(launch, "mpirun", lambda *_: pytest.fail("started"))
     assert main(["run", str(BLOCKS), "-o", "out", "-n", "2", "--set", "spacing=0.007"]) == 2
+    assert main(["run", str(BLOCKS), "-o", "out", "-n", "1000"]) == 2
+    assert "1000 ranks: the box has" in capsys.readouterr().err
     for key, value in zip(LAUNCHED, "20", strict=True):
         monkeypatch.setenv(key, value)
     assert main(["run", str(BLOCKS), "-o", "out", "-n", "2"]) == 2
