@@ -42,6 +42,7 @@ BROKEN = {
     "frames of no time": ("3d", ["output.frames=0"], ["output.frames = 0: must be greater than 0"]),
     "frames of next to no time": ("3d", ["output.frames=1e-310"],
                                   ["output.frames = 1e-310: must be greater than 0, 1e-30 or more"]),
+    "steps of next to nothing": ("3d", ["run.cfl=1e-320"], ["run.cfl = 1e-320: must be greater than 0, 1e-30 or more"]),
     "file without a name": ("3d", ['bed={file="\\u0000.asc"}'], ["bed.file = '\\x00.asc': must be the path of a file"]),
     "mesh without a name": ("3d", ['bodies.A1.shape={kind="mesh",file="\\u0000"}'],
                             ["bodies.0.shape.file = '\\x00': must"]),
