@@ -64,11 +64,9 @@ def run(
     loaded, limit = load(case, changes, until, table, row), _settings(threads, kernel, walltime)
     if ranks:
         from parsim.commands.ranks import changed, launched
-        from parsim.domain.grid import check_ranks
 
-        check_ranks(loaded, ranks)
         words = ["run", case, "-o", out, *changed(changes, table, row), *["--force"] * force]
-        return launched(ranks, words, until, kernel, limit)
+        return launched(ranks, words, until, kernel, limit, loaded)
     from parsim.run.warm import prepare
 
     prepare()
@@ -145,12 +143,9 @@ def resume(
     wanted = load(case, changes, until, table, row) if case else None
     if ranks:
         from parsim.commands.ranks import changed, launched
-        from parsim.domain.grid import check_ranks
 
-        if wanted is not None:
-            check_ranks(wanted, ranks)
         words = ["resume", out, *(["--case", case] if case else []), *changed(changes, table, row)]
-        return launched(ranks, words, until, kernel, limit)
+        return launched(ranks, words, until, kernel, limit, wanted)
     with folders.Folder(out, Comm()) as folder:
         folder.take()
         found = folder.comm.first(find, out, until, kernel, wanted)
