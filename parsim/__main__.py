@@ -66,7 +66,7 @@ def run(
         from parsim.commands.ranks import changed, launched
 
         words = ["run", case, "-o", out, *changed(changes, table, row), *["--force"] * force]
-        return launched(ranks, words, until, kernel, limit)
+        return launched(ranks, words, until, kernel, limit, loaded)
     from parsim.run.warm import prepare
 
     prepare()
@@ -145,7 +145,7 @@ def resume(
         from parsim.commands.ranks import changed, launched
 
         words = ["resume", out, *(["--case", case] if case else []), *changed(changes, table, row)]
-        return launched(ranks, words, until, kernel, limit)
+        return launched(ranks, words, until, kernel, limit, wanted)
     with folders.Folder(out, Comm()) as folder:
         folder.take()
         found = folder.comm.first(find, out, until, kernel, wanted)

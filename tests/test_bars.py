@@ -153,6 +153,29 @@ def test_the_page_shows_every_case_and_its_pictures(tmp_path):
     curve = {"series": "bodies", "column": "z", "curve": [[0.0, 1.0], [0.4, 0.9]]}
     bars = [BAR, Bar("case/one", "quick", "fall", "off_curve", 0.1, True, curve)]
     text = write(tmp_path, rows, bars).read_text()
-    assert "0 of 2 bars met" in text and text.count("MISSED") == 2 and "The run failed." in text
+    assert "0 of 2 bars met" in text and text.count("MISSED") == 2 and "The run failed, or has" in text
     assert text.count("<img") >= 3 and "curves of case/one" in text and 'href="case-one/report/index.html"' in text
     assert (tmp_path / "case-one" / "report" / "index.html").is_file()
+
+
+def test_what_cannot_be_measured_takes_nothing_else_along(made, tmp_path, capsys, monkeypatch):
+    def apex(run):
+        if run == "two":
+            raise InputError("the series bodies has no row from t = 2 s on")
+        return made[run]
+
+    monkeypatch.setitem(runs.MEASURES, "apex", apex)
+    assert runs.validate([], "quick", False, None, tables=(tmp_path / "results.csv", None)) == 1
+    told = capsys.readouterr()
+    assert "case/two: height: cannot be measured: the series bodies has no row" in told.err
+    assert "height: no value" in told.out
+    assert "case/one" in (tmp_path / "results.csv").read_text(), "what was measured is kept"
+
+
+@pytest.mark.parametrize("place", ["other.csv", "latin.csv", ".", "no/such/results.csv"])
+def test_a_table_that_cannot_be_kept_is_refused_before_anything_runs(made, tmp_path, monkeypatch, place):
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    (tmp_path / "latin.csv").write_bytes(b"H\xf6he\n")
+    monkeypatch.setattr(runs, "_run", lambda path, out, ranks: pytest.fail("it has run"))
+    with pytest.raises(InputError, match="--record = "):
+        runs.validate([], "quick", False, None, tables=(tmp_path / place, None))

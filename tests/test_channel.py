@@ -73,7 +73,8 @@ def test_a_hydrograph_is_read_from_a_file_beside_the_case(tmp_path):
     ("q.txt", "0,1\n1,2\n", "must be a CSV file of two columns"),
     ("q.csv", "time,q\n0,1\n", "has 1 rows of numbers; must be two or more"),
     ("q.csv", "0,1\n1,x\n", "row 2, 1,x: must be two numbers"),
-    ("q.csv", "0,1,2\n1,2,3\n2,3,4\n", "row 2, 1,2,3: must be two numbers"),
+    ("q.csv", "0,1,2\n1,2,3\n2,3,4\n", "row 1, 0,1,2: must be two numbers"),
+    ("q.csv", "0,1,\n1,2\n2,3\n", "row 1, 0,1,: must be two numbers"),
 ])  # fmt: skip
 def test_a_wrong_hydrograph_is_told(tmp_path, name, text, said):
     if text is not None:

@@ -20,6 +20,7 @@ from parsim.domain.comm import Comm
 from parsim.errors import InputError, WriteError
 from parsim.launch import mpirun as launch
 from parsim.run import warm
+from parsim.solid.shapes import CylinderShape, DiscShape, PolygonShape, PrismShape
 
 BLOCKS = ROOT / "cases" / "ice_release" / "4_blocks_dry.toml"
 LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK")
@@ -102,6 +103,8 @@ def test_n_starts_ranks_with_the_same_words(solver, monkeypatch):
 def test_n_checks_the_case_first_and_is_refused_inside_a_job(capsys, monkeypatch):
     monkeypatch.setattr(launch, "mpirun", lambda *_: pytest.fail("started"))
     assert main(["run", str(BLOCKS), "-o", "out", "-n", "2", "--set", "spacing=0.007"]) == 2
+    assert main(["run", str(BLOCKS), "-o", "out", "-n", "1000"]) == 2
+    assert "1000 ranks: the box has" in capsys.readouterr().err
     for key, value in zip(LAUNCHED, "20", strict=True):
         monkeypatch.setenv(key, value)
     assert main(["run", str(BLOCKS), "-o", "out", "-n", "2"]) == 2
@@ -187,6 +190,21 @@ def test_estimate_needs_no_room_for_what_it_counts():
     assert cost.water > 1e15 and cost.body > 1e11
 
 
+@pytest.mark.parametrize("shape", [
+    PrismShape(kind="prism", points=[(0.0, 0.0), (0.3, 0.0), (0.0, 0.2)], height=0.15),
+    CylinderShape(kind="cylinder", diameter=0.3, height=0.2),
+    PolygonShape(kind="polygon", points=[(0.0, 0.0), (0.3, 0.0), (0.3, 0.2), (0.0, 0.2)]),
+    DiscShape(kind="disc", diameter=0.3),
+], ids=lambda shape: shape.kind)  # fmt: skip
+def test_a_vast_body_is_counted_by_its_surface(shape, monkeypatch):
+    for depth in (0.01, 1.0):
+        exact = shape.number_of_samples(0.005, depth, shape.FLAT)
+        monkeypatch.setattr("parsim.solid.shapes.shape._MOST", 0)
+        assert shape.number_of_samples(0.005, depth, shape.FLAT) == pytest.approx(exact, rel=0.15)
+        monkeypatch.undo()
+    assert shape.number_of_samples(1e-8, 3e-8, shape.FLAT) > (1e7 if shape.FLAT else 1e14)
+
+
 def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["new", "river"]) == 0
@@ -196,6 +214,9 @@ def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, caps
     assert "river.toml exists already" in capsys.readouterr().err
     assert (tmp_path / "river.toml").read_text() == "mine"
     assert main(["new", "no/such/river"]) == 74
+    assert [main(["new", name]) for name in ("", ".toml", "no/", "..")] == [2] * 4
+    assert "NAME = 'no/': is no name of a file" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["river.toml"]
 
 
 def test_an_example_is_found_by_name_anywhere_and_can_be_had_as_one_file(tmp_path, capsys, monkeypatch):

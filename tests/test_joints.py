@@ -280,6 +280,27 @@ def test_a_plane_keeps_its_joints():
     }
     with pytest.raises(InputError, match="leads out of the plane"):
         parse(given | {"joints": [{"kind": "steady", "body": "a", "velocity": [0.0, 1.0, 0.0]}]})
+    late = [[0.0, 0, 0, 0], [5.0, 0.1, 0, 0], [6.0, 0.1, 0.2, 0]]
+    turned = [[0.0, 0, 0, 0], [5.0, 0.1, 0, 0, 0, 10.0, 0], [6.0, 0.1, 0, 0, 0, 0, 5.0]]
+    for key, words in (
+        ("amplitude", {"kind": "sway", "amplitude": [0.0, 0.01, 0.0], "frequency": 10.0}),
+        ("turn", {"kind": "sway", "turn": [5.0, 0.0, 0.0], "frequency": 10.0}),
+        ("rows.2", {"kind": "schedule", "rows": late}),
+        ("rows.2", {"kind": "schedule", "rows": turned}),
+        ("axis", {"kind": "swing", "pivot": [0.5, 0.5, 0.5], "axis": [1.0, 0.0, 0.0], "speed": 1.0}),
+        ("spin", {"kind": "steady", "spin": [0.0, 0.0, 1.0]}),
+    ):
+        with pytest.raises(InputError, match=rf"joints.0.{key} = .*leads out of the plane"):
+            parse(given | {"joints": [words | {"body": "a"}]})
+    for words in (
+        {"kind": "sway", "amplitude": [0.1, 0.0, 0.1], "turn": [0.0, 5.0, 0.0], "frequency": 1.0},
+        {"kind": "schedule", "rows": [[0.0, 0, 0, 0], [1.0, 0.1, 0, 0.1, 0, 9.0, 0]]},
+        {"kind": "swing", "pivot": [0.1, 0.0, 0.2], "axis": [0.0, -2.0, 0.0], "speed": 1.0},
+        {"kind": "steady", "velocity": [1.0, 0.0, 1.0], "spin": [0.0, 1.0, 0.0]},
+    ):
+        parse(given | {"joints": [words | {"body": "a"}]})
+    with pytest.raises(InputError, match="each has 4 numbers"):
+        parse(given | {"joints": [{"kind": "schedule", "body": "a", "rows": [[0.0, 0, 0, 0], [1.0, 0, 0, 0, 0]]}]})
     with pytest.raises(InputError, match="y must be 0.5 in a 2D case"):
         parse(given | {"joints": [{"kind": "spring", "body": "a", "to": [0.5, 0.0, 0.0], "stiffness": 1.0}]})
     with pytest.raises(InputError, match="pivot = .*: y must be 0.5 in a 2D case"):
@@ -287,3 +308,39 @@ def test_a_plane_keeps_its_joints():
     with pytest.raises(InputError, match="must begin with zero"):
         parse(given | {"joints": [{"kind": "schedule", "body": "a", "rows": [[0.0, 0.1, 0, 0], [1.0, 0.2, 0, 0]]}]})
     assert len(JOINTS) == 7
+
+
+def test_a_schedule_is_read_where_it_is_and_not_all_of_it():
+    rows = tuple(
+        (0.1 * k, math.sin(k), 0.0, math.cos(k) - 1.0, 0.0, 3.0 * k, 0.0)[: 4 + 3 * (k % 2)] for k in range(50)
+    )
+    table = ScheduleTable(kind="schedule", body="a", rows=rows)
+    every = np.array([(*row, *(0.0,) * (7 - len(row))) for row in rows])
+    for time in (*every[:, 0], -1.0, 0.05, 2.34, 4.89999, 7.0):
+        exact = [np.interp(time, every[:, 0], column) for column in every[:, 1:].T]
+        pose = table.pose(time, np.zeros(3))
+        assert [*pose.shift, *pose.turn] == [*exact[:3], *np.radians(exact[3:])]
+    asked = []
+
+    class Row(tuple):
+        __slots__ = ()
+
+        def __getitem__(self, at):
+            asked.append(at)
+            return super().__getitem__(at)
+
+        def __iter__(self):
+            asked.append(self)
+            return super().__iter__()
+
+    many = ScheduleTable.model_construct(rows=tuple(Row((float(k), 0.0, 0.0, 0.0)) for k in range(4096)))
+    assert not many.pose(1234.5, np.zeros(3)).shift.any() and len(asked) < 30
+
+
+def test_an_axis_of_any_length_is_a_direction():
+    small, large = (
+        SwingTable(kind="swing", body="a", pivot=(0.0, 0.0, 0.0), axis=(0.0, length, 0.0), speed=1.0)
+        for length in (1e-200, 1.0)
+    )
+    centre = np.array([0.3, 0.5, 0.1])
+    assert (small.pose(0.7, centre).shift == large.pose(0.7, centre).shift).all()

@@ -234,3 +234,9 @@ def test_doctor_forgives_what_a_run_does_not_need(monkeypatch, capsys):
     )
     assert doctor.examine_machine() == 0
     assert "no OpenGL" in capsys.readouterr().out
+
+
+def test_doctor_tells_of_threads_that_are_no_number(monkeypatch):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "many")
+    found = doctor._cores()
+    assert found.wrong == "NUMBA_NUM_THREADS = 'many' is no number" and not found.needed

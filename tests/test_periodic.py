@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 from flows import WOOD, fluid, simulation, tank
 
+from parsim.case.model import parse
+from parsim.domain.grid import check_ranks
+from parsim.errors import InputError
+
 LENGTH, SPACING = 0.4, 0.01
 
 
@@ -65,3 +69,17 @@ def test_floes_drift_around_a_channel():
     assert home == 1 and (s.bodies.position[:, 0] > 2.0 * LENGTH).all()
     assert s.bodies.velocity[:, 0] == pytest.approx(0.5, abs=0.05)
     assert s.bodies.position[:, 2] == pytest.approx(0.1 + 0.015 - 0.03 * 0.8 + 0.006, abs=0.006)
+
+
+@pytest.mark.parametrize("axis", "xy")
+def test_sides_that_repeat_too_soon_are_refused(axis):
+    """Each particle is seen once from either side: not twice, as it would have to be."""
+    sizes = {"x": 0.4, "y": 0.4}
+    for size, wrong in ((0.03, True), (0.04, False)):  # the lists reach over 0.035 m
+        sizes[axis] = size
+        case = parse(tank(sizes["x"], 0.2, SPACING, fill=(sizes["x"], 0.1), across=sizes["y"], periodic=axis))
+        if not wrong:
+            check_ranks(case, 1)
+            continue
+        with pytest.raises(InputError, match=rf"{axis} repeats after 0.03 m; must be 0.035 m or more"):
+            check_ranks(case, 1)

@@ -8,7 +8,7 @@ import pytest
 
 from parsim.__main__ import main
 from parsim.fluid import SCHEMES
-from parsim.validate import schemes
+from parsim.validate import runs, schemes
 
 REFUSAL = 'error: water.scheme.kind = "sphale": knows no friction\n'
 
@@ -27,7 +27,7 @@ def made(monkeypatch):
     monkeypatch.setattr(subprocess, "run", run)
     monkeypatch.setattr(schemes.parsim, "open", lambda out: SimpleNamespace(info={"wall_s": 12.5}, folder=out))
     monkeypatch.setattr(schemes, "published", lambda run: [])
-    monkeypatch.setattr(schemes, "MEASURES", dict.fromkeys(schemes.MEASURES, lambda run, **given: 0.0))
+    monkeypatch.setattr(runs, "MEASURES", dict.fromkeys(runs.MEASURES, lambda run, **given: 0.0))
     return said
 
 

@@ -148,3 +148,21 @@ def test_sensors_that_can_not_be_are_refused(sensor, text):
     with pytest.raises(InputError) as error:
         parse(given | {"output": {"sensors": [sensor | {"name": "a"}]}})
     assert text in str(error.value)
+
+
+def test_between_inlet_and_outlet_only_what_is_in_the_box_counts():
+    """Water and floor go on beyond an outlet, and the floor before an inlet."""
+    given = tank(0.4, 0.2, 0.01, fill=(0.4, DEPTH), speed=2.0)
+    given["box"]["faces"] = {
+        "x_min": {"kind": "inlet", "discharge": 0.5 * DEPTH},
+        "x_max": {"kind": "outlet", "level": DEPTH},
+    }
+    given["water"]["fill"][0]["velocity"] = [0.5, 0.0, 0.0]
+    sections = [{"kind": "flux", "name": f"at_{k}", "x": x} for k, x in enumerate((0.0, 0.2, 0.375, 0.39, 0.4))]
+    s = simulation(given, output={"sensors": [*sections, {"kind": "force", "name": "floor", "wall": "z_min"}]})
+    for _, _, discharge, area, *_ in Fluxes(s.case).rows(s):
+        assert area == pytest.approx(DEPTH, rel=0.03) and discharge == pytest.approx(0.5 * area, rel=1e-6)
+    for _ in range(3):
+        s.step()
+    floor = next(force for _, _, kind, *force in Forces(s.case).rows(s) if kind == "pressure")
+    assert floor[2] == pytest.approx(-1000.0 * GRAVITY * DEPTH * 0.4, rel=0.03)

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from parsim.case.types import Name, NotNegative, Positive, Real, Share, Table, Whole
+from parsim.case.types import LEAST, Name, NotNegative, Positive, Real, Share, Table, Whole
 from parsim.errors import nearest, suggestion
 from parsim.solid.laws import DEFAULT, Law
 
@@ -15,7 +15,7 @@ class Material(Table):
     young: Positive = Field(description="Young's modulus, Pa")
     poisson: Real = Field(ge=0, lt=0.5, description="Poisson's ratio")
     friction: Real = Field(ge=0, le=10, description="coefficient of sliding friction")
-    restitution: Real = Field(gt=0, le=1, description="coefficient of restitution")
+    restitution: Real = Field(ge=LEAST, le=1, description="coefficient of restitution")
     rolling: Share = Field(0.0, description="coefficient of rolling friction, of what is round")
     crushing_strength: Positive | None = Field(
         None, description="pressure, Pa, at which what it touches with is crushed; left out: never"
@@ -32,7 +32,7 @@ class Pair(Table):
     friction: Annotated[Real, Field(ge=0, le=10)] | None = Field(
         None, description="coefficient of sliding friction; left out: the mean of theirs"
     )
-    restitution: Annotated[Real, Field(gt=0, le=1)] | None = Field(
+    restitution: Annotated[Real, Field(ge=LEAST, le=1)] | None = Field(
         None, description="coefficient of restitution; left out: the mean of theirs"
     )
     rolling: Share | None = Field(None, description="coefficient of rolling friction; left out: the mean of theirs")

@@ -70,7 +70,7 @@ def _rows(path, key):
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             lines = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f'{key}.file = "{path}": cannot be read: {reason}') from None
     rows = []
@@ -78,10 +78,18 @@ def _rows(path, key):
         try:
             time, value = map(float, row)
         except ValueError:
-            if number == 0:
+            if number == 0 and not any(map(_is_number, row)):
                 continue  # names of the columns
             raise InputError(f'{key}.file = "{path}": row {number + 1}, {",".join(row)}: must be two numbers') from None
         rows.append([time, value])
     if len(rows) < 2:
         raise InputError(f'{key}.file = "{path}": has {len(rows)} rows of numbers; must be two or more')
     return rows
+
+
+def _is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

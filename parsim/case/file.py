@@ -30,7 +30,7 @@ def locate(data, folder):
     """Make the paths of files that a case names whole, and read those of courses: they count from where the case is."""
     study, ice, box = (data.get(name) for name in ("study", "ice", "box"))
     if isinstance(study, dict) and isinstance(study.get("table"), str):
-        study["table"] = str((folder / study["table"]).resolve())
+        study["table"] = _whole(folder, study["table"], "study.table")
     for name in ("channel", "motion"):
         if isinstance(data.get(name), dict):
             read_courses(data[name], folder, name)
@@ -38,14 +38,21 @@ def locate(data, folder):
     for name, side in faces.items() if isinstance(faces, dict) else ():
         if isinstance(side, dict):
             read_courses(side, folder, f"box.faces.{name}")
-    named = [body.get("shape") for body in _tables(data.get("bodies"))]
+    named = [(f"bodies.{number}.shape", body.get("shape")) for number, body in enumerate(_tables(data.get("bodies")))]
     for key in ("fields", "supplies"):
         for given in _tables(ice.get(key) if isinstance(ice, dict) else None):
             read_courses(given, folder, f"ice.{key}")
-            named += given.values()
-    for table in (*named, data.get("bed")):
+            named += [(f"ice.{key}.{name}", value) for name, value in given.items()]
+    for name, table in (*named, ("bed", data.get("bed"))):
         if isinstance(table, dict) and isinstance(table.get("file"), str):
-            table["file"] = str((folder / table["file"]).resolve())
+            table["file"] = _whole(folder, table["file"], f"{name}.file")
+
+
+def _whole(folder, path, key):
+    """The whole path of a file that a case in a folder names. Raises InputError."""
+    if "\0" in path:
+        raise InputError(f"{key} = {path!r}: must be the path of a file")
+    return str((folder / path).resolve())
 
 
 def _tables(entries):

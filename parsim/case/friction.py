@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from parsim.case.types import NotNegative, Real, Switch, Table
+from parsim.case.types import LEAST, NotNegative, Real, Switch, Table
 from parsim.geometry.faces import names_of_walls, velocities_of_walls
 
 FaceName = Literal["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
@@ -32,7 +32,7 @@ class Eddies(Table):
         description="mixing_length: l = 0.41 d sqrt(1 - d/H) over the floor, 0.41 d at sides; smagorinsky: that, at "
         "most constant times two spacings"
     )
-    constant: Annotated[Real, Field(gt=0, le=0.5)] = Field(0.15, description="Smagorinsky's constant")
+    constant: Annotated[Real, Field(ge=LEAST, le=0.5)] = Field(0.15, description="Smagorinsky's constant")
 
 
 def faults(case):

@@ -13,7 +13,7 @@ from parsim.case.bodies import gate_box, placed
 from parsim.case.course import Course
 from parsim.case.ice_faults import floes_of, rectangle, shape_of, water_under
 from parsim.case.plans import plan_of
-from parsim.case.types import Count, Name, NotNegative, Number, Positive, Real, Table, Vector, Whole
+from parsim.case.types import LEAST, Count, Name, NotNegative, Number, Positive, Real, Table, Vector, Whole
 from parsim.errors import InputError
 from parsim.geometry.faces import repeats
 from parsim.ice.draw import Laws, stream_of
@@ -26,7 +26,7 @@ from parsim.ice.row import row
 GAP = 0.5  # spacings, between floes and to all else, where no gap is given
 SQUARE = Listed(kind="list", values=(1.0,))
 Ends = Annotated[tuple[Number, ...], Field(max_length=2)]
-Concentration = Annotated[Real, Field(gt=0, le=0.9)]
+Concentration = Annotated[Real, Field(ge=LEAST, le=0.9)]
 
 
 class Floes(Table):

@@ -6,7 +6,7 @@ from typing import get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from parsim.case.types import CHOICE, TAG, kind_of
+from parsim.case.types import CHOICE, LEAST, TAG, kind_of
 from parsim.errors import InputError, nearest, suggestion
 
 _ALLOWED = {
@@ -95,6 +95,8 @@ def _described(model, data, faults):
     for fault in faults:
         place = _within(data, fault["loc"], fault["type"] == "missing")
         text = _ALLOWED.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))
+        if fault.get("ctx", {}).get("ge") == LEAST:
+            text = f"must be greater than 0, {LEAST:g} or more"
         causes.setdefault(place, []).append(text)
     return [_message(model, data, place, texts) for place, texts in causes.items()]
 

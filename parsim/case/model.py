@@ -23,7 +23,20 @@ from parsim.case.measure import Measure
 from parsim.case.messages import validated
 from parsim.case.motion import Motion
 from parsim.case.output import Output, Report
-from parsim.case.types import Count, Moderate, Name, NotNegative, Number, Place, Positive, Real, Switch, Table, Vector
+from parsim.case.types import (
+    LEAST,
+    Count,
+    Moderate,
+    Name,
+    NotNegative,
+    Number,
+    Place,
+    Positive,
+    Real,
+    Switch,
+    Table,
+    Vector,
+)
 from parsim.fluid import DEFAULT, Scheme
 from parsim.fluid.profiles import Profile
 from parsim.solid.joints import Joint
@@ -124,8 +137,8 @@ class Run(Table):
 
     until: Positive = Field(description="end time, s")
     settle: NotNegative = Field(0.0, description="length of damped motion before t = 0, s")
-    cfl: Real = Field(1.0, gt=0, le=1.75, description="time step over spacing / (speed of sound + largest speed)")
-    skin: Real = Field(0.4, gt=0, le=2, description="margin of the neighbour lists over the spacing")
+    cfl: Real = Field(1.0, ge=LEAST, le=1.75, description="time step over spacing / (speed of sound + largest speed)")
+    skin: Real = Field(0.4, ge=LEAST, le=2, description="margin of the neighbour lists over the spacing")
     rebuild_at_most: Count = Field(20, description="steps between rebuilds of the neighbour lists, at most")
     outside: Literal["remove", "stop"] = Field(
         "remove", description="what becomes of water and bodies that leave the box"

@@ -7,7 +7,8 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Strict, Tag, m
 Real = Annotated[float, Strict()]
 Whole = Annotated[int, Strict()]
 Number = Annotated[Real, Field(ge=-1e9, le=1e9)]
-Positive = Annotated[Real, Field(gt=0, le=1e15)]
+LEAST = 1e-30  # that counts as positive: over less than that nothing can be divided
+Positive = Annotated[Real, Field(ge=LEAST, le=1e15)]
 NotNegative = Annotated[Real, Field(ge=0, le=1e15)]
 Share = Annotated[Real, Field(ge=0, le=1)]
 Count = Annotated[Whole, Field(ge=1, le=10**9)]

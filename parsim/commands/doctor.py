@@ -149,11 +149,14 @@ def _size(folder):
 
 
 def _cores():
-    threads = int(os.environ.get("NUMBA_NUM_THREADS", "1"))
+    given = os.environ.get("NUMBA_NUM_THREADS", "1")
+    threads = int(given) if given.isdecimal() else 1
     hardware = len(os.sched_getaffinity(0))
     found = f"{mpirun.cores()} cores, {hardware} hardware threads; a rank uses {threads}"
     wrong = "a rank uses more than there are" if threads > hardware else ""
     remedy = "set OMP_NUM_THREADS so that ranks times threads is at most the number of cores"
+    if not given.isdecimal():
+        wrong, remedy = f"NUMBA_NUM_THREADS = {given!r} is no number", "unset NUMBA_NUM_THREADS"
     return Finding("Cores", found, wrong, remedy, needed=False)
 
 

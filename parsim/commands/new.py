@@ -22,6 +22,8 @@ def new_case(name: str | None, example: str | None = None, asked: Asked = Asked(
     if asked != Asked():
         raise InputError(f"--from {example}: stations, spacing, level, reach and scale belong to a file of ground")
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if not path.name.removesuffix(".toml").strip("."):
+        raise InputError(f"NAME = {name!r}: is no name of a file; give the name of the case to write, such as flume")
     text = _text(example)
     try:
         with path.open("x", encoding="utf-8") as file:

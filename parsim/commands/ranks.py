@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from parsim.case.model import Case
 from parsim.errors import InputError
 from parsim.launch import mpirun, stop
 
@@ -14,8 +15,17 @@ def changed(changes: Iterable[str] | None, table: Path | None, row: int | None) 
     return words + (["--table", table, "--row", row] if table else [])
 
 
-def launched(ranks: int, words: list[object], until: float | None, kernel: str | None, limit: float | None) -> int:
-    """Exit code of `parsim` with these words as so many ranks; `limit`, s: the walltime. Raises InputError."""
+def launched(
+    ranks: int, words: list[object], until: float | None, kernel: str | None, limit: float | None, case: Case | None
+) -> int:
+    """Exit code of `parsim` with these words as so many ranks; `limit`, s: the walltime. Raises InputError.
+
+    A `case` that is known is refused before they start, where it has no room for them.
+    """
+    if case is not None:
+        from parsim.domain.grid import check_ranks  # brings numba along, whose settings a run makes first
+
+        check_ranks(case, ranks)
     if mpirun.world()[1] > 1:
         raise InputError(f"-n {ranks}: {mpirun.world()[1]} processes of this command are running already; leave -n out")
     words += ["--until", repr(until)] if until is not None else []

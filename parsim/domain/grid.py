@@ -13,8 +13,16 @@ if TYPE_CHECKING:
 
 
 def check_ranks(case: Case, ranks: int) -> None:
-    """Raise InputError when the box has too few layers of cells for this many ranks."""
-    layers = grid_of(case).layers
+    """Raise InputError when the box has too few layers of cells for this many ranks, or repeats too soon."""
+    grid = grid_of(case)
+    layers, cells = grid.layers, grid.count - 2 * grid.pad
+    short = [axis for axis in case.axes if grid.periodic[axis] and cells[axis] < REACH]
+    if short and (case.water.scheme.WET or short[0] == 0):  # else a particle would see but one of its images
+        raise InputError(
+            f"box.min, box.max: {'xyz'[axis]} repeats after {case.box.size[axis]:g} m; must be {case.reach:.6g} m or "
+            "more, the radius of the neighbour lists"
+            for axis in short
+        )
     if layers < HALO * ranks:
         raise InputError(
             f"{ranks} ranks: the box has {layers} layers of cells along x and a rank needs at least "

@@ -17,7 +17,7 @@ import numpy as np
 from pydantic import Field
 
 from parsim.case.messages import short
-from parsim.case.types import CHOICE, Moderate, Real, Share, Table, choice
+from parsim.case.types import CHOICE, LEAST, Moderate, Real, Share, Table, choice
 from parsim.errors import InputError
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ class Lognormal(LawTable):
 
     kind: Literal["lognormal"] = Field(description="a normal distribution of the logarithm, cut at both ends")
     median: Moderate = Field(description="median before it is cut")
-    sigma: Annotated[Real, Field(gt=0, le=5)] = Field(description="standard deviation of the natural logarithm")
+    sigma: Annotated[Real, Field(ge=LEAST, le=5)] = Field(description="standard deviation of the natural logarithm")
     min: Moderate = Field(description="least value")
     max: Moderate = Field(description="largest value")
 

@@ -51,8 +51,9 @@ class Fluxes:
         return rows
 
     def _share(self, case, x):
-        """The part of the hat that is in the box."""
+        """The part of the hat that is in the box; at an outlet the water goes on beyond it."""
         if np.isfinite(self._period):
             return 1.0
-        cut = (max(1.0 - abs(side - x) / self._width, 0.0) for side in (case.box.min[0], case.box.max[0]))
+        ends = [case.box.min[0]] + [case.box.max[0]] * (case.box.faces.x_max.kind != "outlet")
+        cut = (max(1.0 - abs(side - x) / self._width, 0.0) for side in ends)
         return 1.0 - sum(0.5 * each * each for each in cut)

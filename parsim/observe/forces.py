@@ -30,7 +30,7 @@ class Forces:
         self._patches = [sensor for sensor in case.output.sensors if isinstance(sensor, Patch)]
         self._planes = dict(zip(names_of_walls(case), planes_of_walls(case), strict=True))
         self._unit, self._spacing = scales(case).force, case.spacing
-        self._used = np.isin(range(3), case.axes)
+        self._used, self._box = np.isin(range(3), case.axes), (np.array(case.box.min), np.array(case.box.max))
         self._density, self._filters = case.water.density, Filters(self._patches)
         self._area = case.spacing ** (case.dimensions - 1)
 
@@ -84,8 +84,9 @@ class Forces:
         plane = self._planes[patch.wall]
         behind = plane[3] - place @ plane[:3]
         along = (np.abs(plane[:3]) == 0.0) & self._used
-        low = np.full(3, -np.inf) if patch.min is None else np.array(patch.min)
-        high = np.full(3, np.inf) if patch.max is None else np.array(patch.max)
+        low, high = self._box  # beside inlet and outlet walls go on beyond it
+        low = low if patch.min is None else np.maximum(low, patch.min)
+        high = high if patch.max is None else np.minimum(high, patch.max)
         within = ((place >= low) & (place < high) | ~along).all(axis=1)
         for name, other in self._planes.items():
             if name != patch.wall:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from parsim.case.estimate import disk, estimate
 from parsim.errors import InputError, WriteError
 from parsim.output import checkpoint, lock
-from parsim.output.frames import write_text
+from parsim.output.frames import replacing, write_text
 from parsim.output.reader import MARK, is_output
 from parsim.output.reader import open as open_run
 
@@ -100,7 +100,8 @@ class Folder:
         self._furnish(case, {"case_name": source.stem})
         reference = source.with_name("reference.csv")
         if reference.is_file():
-            write_text(out / reference.name, reference.read_text(encoding="utf-8"))
+            with replacing(out / reference.name) as part:
+                shutil.copyfile(reference, part)
 
     def _take(self):
         open_run(self.path)  # raises InputError where there is no output

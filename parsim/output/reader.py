@@ -18,6 +18,9 @@ from parsim.output.frames import read_index
 
 MARK = "run.json"  # the first file that a run writes
 KINDS = ("water", "bodies")  # of frames
+WORDS = {"body", "filter", "gauge", "kind", "line", "patch", "probe", "section", "sensor", "what"}  # columns of text
+
+MENDED = "`parsim resume`, of a run that is done with a later --until, writes it anew from the newest checkpoint on"
 
 
 def open(folder: Path | str) -> Run:
@@ -38,7 +41,8 @@ def is_output(folder: Path) -> bool:
 
 def _refusal(folder):
     """Why a folder is no output, and which one was perhaps meant: one that holds it, one in it, one named like it."""
-    reason = f"holds neither {MARK} nor a checkpoint" if folder.is_dir() else "there is no such folder"
+    missing = "is a file" if folder.is_file() else "there is no such folder"
+    reason = f"holds neither {MARK} nor a checkpoint" if folder.is_dir() else missing
     beside = {path.parent.name: path.parent for path in folder.parent.glob(f"*/{MARK}")}
     related = [place for place in folder.parents if (place / MARK).is_file()]
     related += sorted(path.parent for path in folder.glob(f"*/{MARK}"))
@@ -66,9 +70,14 @@ class Run:
 
     @cached_property
     def case(self) -> dict[str, Any]:
-        """The completed case (case.toml) as a dict; empty when the run was stopped before writing it."""
+        """The completed case (case.toml) as a dict; empty when the run was stopped before writing it.
+
+        Raises InputError where it is damaged."""
         path = self.folder / "case.toml"
-        return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        try:
+            return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path}: cannot be read as the case of a run ({error}); {MENDED}") from None
 
     @cached_property
     def info(self) -> dict[str, Any]:
@@ -129,11 +138,12 @@ class Run:
     def series(self, name: str) -> dict[str, np.ndarray]:
         """One series as a dict of columns (rows,): int64, float64 or text. Units are in :meth:`units`.
 
-        A last row that a stopped run left unfinished is not read. Raises InputError for a name there is not.
+        A last row that a stopped run left unfinished is not read. Raises InputError for a name there is not, and for a
+        table that is damaged.
         """
         titles, rows = self._table(name)[1:]
         columns = zip(*rows, strict=True) if rows else [()] * len(titles)
-        return {title: _typed(values) for title, values in zip(titles, columns, strict=True)}
+        return {title: _typed(title, values) for title, values in zip(titles, columns, strict=True)}
 
     def units(self, name: str) -> dict[str, str]:
         """The unit of each column of a series, as a dict of texts. Raises InputError for a name there is not."""
@@ -161,7 +171,11 @@ class Run:
                 f"kind = {kind!r}: no such frames; must be {' or '.join(map(repr, KINDS))}"
                 + suggestion(nearest(str(kind), KINDS))
             )
-        return read_index(self.folder / f"{kind}.vtkhdf.series")
+        path = self.folder / f"{kind}.vtkhdf.series"
+        try:
+            return read_index(path)
+        except (OSError, ValueError, LookupError, TypeError):
+            raise InputError(f"{path}: cannot be read as an index of frames; {MENDED}") from None
 
     def _held(self, kind):
         """How many frames of a kind there are and of what times, in words."""
@@ -177,9 +191,14 @@ class Run:
                 + suggestion(nearest(str(name), self.series_names))
             )
         # what follows the last line end is a row that was being written
-        lines = path.read_text(encoding="utf-8").split("\n")[:-1]
+        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")[:-1]
+        if len(lines) < 2:
+            raise InputError(f"{path}: has no line of units and names of columns; {MENDED}")
         units = lines[0].removeprefix("# units: ").split(", ")
         titles, *rows = csv.reader(lines[1:])
+        for number, row in enumerate(rows, 3):
+            if len(row) != len(titles):
+                raise InputError(f"{path}: line {number} has {len(row)} values for {len(titles)} columns; {MENDED}")
         return units, titles, rows
 
 
@@ -193,8 +212,8 @@ def _arrays(group):
     return {name: values[:] for name, values in group.items()}
 
 
-def _typed(texts):
-    for kind in (np.int64, np.float64):
+def _typed(title, texts):
+    for kind in (np.int64, np.float64) if title not in WORDS else ():  # "inf" may be the name of a gauge
         try:
             return np.array(texts, dtype=kind) if len(texts) else np.zeros(0)
         except ValueError:

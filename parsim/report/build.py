@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
+from parsim.errors import InputError
 from parsim.output.frames import replacing, write_text
+from parsim.output.reader import MENDED
 from parsim.output.reader import open as open_run
 from parsim.report.animation import chosen
 from parsim.report.measures import asked, moments
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from parsim.output.reader import Run
 
 DOTS = 110
+LARGEST = 2**15  # dots along a side: matplotlib draws no more than twice that
 
 
 class Page:
@@ -45,7 +48,7 @@ class Page:
         if drawn is None:
             return ""
         target = io.BytesIO()
-        drawn.savefig(target, format="png", dpi=DOTS)
+        drawn.savefig(target, format="png", dpi=min(DOTS, LARGEST / max(drawn.get_size_inches())))
         return self.keep(name, "png", target.getvalue(), alternative, caption)
 
 
@@ -55,10 +58,13 @@ def build(out: Path | str, vtk: bool = True) -> Path:
     Raises InputError when ``out`` is no output folder, WriteError when the report cannot be written.
     """
     run = open_run(out)
+    if run.series_names and not run.case:
+        raise InputError(f"OUT = {run.folder}: its case.toml is gone; {MENDED}")
     work = Page(run, vtk)
     parts = [listing(summary(run)), *(each.parts(work) for each in SECTIONS)]
     path = work.folder / "index.html"
-    write_text(path, page(run.case.get("title", run.folder.name), f"parsim report of {run.folder.name}", parts))
+    name = run.folder.resolve().name  # "." has none
+    write_text(path, page(run.case.get("title") or name, f"parsim report of {name}", parts))
     return path
 
 

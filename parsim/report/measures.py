@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from parsim.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -62,21 +65,27 @@ class Published:
 
 
 def published(run: Run) -> list[Published]:
-    """The rows of reference.csv that are about this case; their first column names one or more, apart by spaces."""
+    """The rows of reference.csv that are about this case; their first column names one or more, apart by spaces.
+
+    None, where the file is a table of another kind, which happens to have the name. Raises InputError.
+    """
     path = run.folder / "reference.csv"
     if not path.is_file():
         return []
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    text = path.read_bytes().decode("utf-8-sig", errors="replace")  # editors of Windows begin a file with a mark
+    lines = [line for line in text.splitlines(keepends=True) if line.strip() and not line.startswith("#")]
+    rows, known = csv.DictReader(lines, restval=""), {field.name for field in fields(Published)} | {"case"}
+    if not known <= set(rows.fieldnames or ()):
+        return []
     return [
         Published(
             block=row["block"],
             quantity=row["quantity"],
-            low=_number(row["low"]),
-            high=_number(row["high"]),
-            model=_number(row["model"]),
+            low=_number(path, row, "low"),
+            high=_number(path, row, "high"),
+            model=_number(path, row, "model"),
             unit=row["unit"],
-            time=_number(row["time"]),
+            time=_number(path, row, "time"),
             source=row["source"],
         )
         for row in rows
@@ -84,8 +93,16 @@ def published(run: Run) -> list[Published]:
     ]
 
 
-def _number(text):
-    return float(text) if text else None
+def _number(path, row, key):
+    """The number in a column of a row, None where there is none."""
+    try:
+        value = float(row[key]) if row[key].strip() else None
+    except ValueError:
+        value = math.nan
+    if value is not None and not math.isfinite(value):
+        place = ", ".join(word for word in (row["case"], row["block"], row["quantity"]) if word)
+        raise InputError(f"{path}: {place}: {key} = {row[key]!r}: must be a finite number, such as 0.18, or nothing")
+    return value
 
 
 def verdict(value: float | None, number: Published) -> str:

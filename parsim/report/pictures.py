@@ -165,11 +165,13 @@ def _tops(scene, there):
 def _ruler(axes, scene, view):
     """Lengths along the tank's lower front edge."""
     low, high = scene.tank
-    step = 10.0 ** np.floor(np.log10((high[0] - low[0]) / 2))
+    length = high[0] - low[0]
+    power = int(np.floor(np.log10(length / 2)))
+    step, digits, off = 10.0**power, max(-power, 0), 0.0035 * length
     marks = np.arange(np.ceil(low[0] / step), np.floor(high[0] / step) + 1) * step
     across, up, _ = view.project(np.stack([marks, np.full(len(marks), low[1]), np.full(len(marks), low[2])], 1))
     for x, y, mark in zip(across, up, marks, strict=True):
-        axes.text(x + 0.004, y - 0.004, f"{mark:.1f} m", fontsize=7, color=INK, ha="left", va="top", zorder=4)
+        axes.text(x + off, y - off, f"{mark:.{digits}f} m", fontsize=7, color=INK, ha="left", va="top", zorder=4)
 
 
 def snapshot(gallery: Gallery, frame: int, labels: bool = True) -> Figure:

@@ -106,8 +106,10 @@ def draw(plotter: pyvista.Plotter, scene: Scene, view: View, width: int, fine: b
     plotter.enable_anti_aliasing("ssaa") if fine else plotter.disable_anti_aliasing()
     plotter.window_size = (width, max(1, round(width * (top - bottom) / (right - left))))
     across, up = (left + right) / 2, (bottom + top) / 2
-    focus = across * np.array(view.right) + up * np.array(view.up)
-    plotter.camera_position = [focus - 10 * np.array(view.away), focus, view.up]
+    corners = box_corners(*scene.tank)
+    middle, far = np.mean(view.project(corners)[2]), 10 * np.ptp(corners, axis=0).max()  # what is behind it is not seen
+    focus = across * np.array(view.right) + up * np.array(view.up) + middle * np.array(view.away)
+    plotter.camera_position = [focus - far * np.array(view.away), focus, view.up]
     plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = (top - bottom) / 2
     plotter.reset_camera_clipping_range()

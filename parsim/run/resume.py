@@ -81,7 +81,7 @@ def _ends(run, until):
     """The end that a run is to have, s; that of its case where none is given."""
     try:
         return run.case["run"]["until"] if until is None else until
-    except (tomllib.TOMLDecodeError, KeyError, TypeError):
+    except (InputError, KeyError, TypeError):
         return -math.inf
 
 

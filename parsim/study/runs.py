@@ -122,7 +122,7 @@ class Runs:
     def _check(self, run: Run, case: Case) -> None:
         try:
             there = run.case
-        except (OSError, tomllib.TOMLDecodeError):
+        except InputError:
             there = {}
         changed = changed_keys(there, tomllib.loads(case.to_toml())) if there else []
         if changed:

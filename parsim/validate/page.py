@@ -31,8 +31,10 @@ def write(folder: Path, rows: Iterable[dict[str, Any]], bars: Sequence[Bar]) -> 
     met = sum(row["passed"] for row in rows)
     parts = [section("All bars", table(("case", *TITLES), [(row["case"], *_told(row)) for row in rows]))]
     for case, own in itertools.groupby(rows, key=lambda row: row["case"]):
-        mine = [bar for bar in bars if bar.case == case]
-        parts.append(_section(folder / case.replace("/", "-"), case, list(own), mine))
+        told = list(own)
+        lost = {row["quantity"] for row in told if row["value"] is None}
+        mine = [bar for bar in bars if bar.case == case and bar.quantity not in lost]
+        parts.append(_section(folder / case.replace("/", "-"), case, told, mine))
     path = folder / "index.html"
     write_text(path, page("parsim validation", f"{met} of {len(rows)} bars met, on {processor()}", parts))
     return path
@@ -40,8 +42,8 @@ def write(folder: Path, rows: Iterable[dict[str, Any]], bars: Sequence[Bar]) -> 
 
 def _section(out: Path, case: str, rows: list[dict[str, Any]], bars: list[Bar]) -> str:
     told = table(TITLES, [_told(row) for row in rows])
-    if any(row["value"] is None for row in rows):
-        return section(case, told, "<p>The run failed.</p>")
+    if all(row["value"] is None for row in rows):
+        return section(case, told, "<p>The run failed, or has nothing to measure.</p>")
     build(out, vtk=False)
     run, report = open_run(out), out / "report"
     title = run.case.get("title", case)

@@ -35,6 +35,13 @@ def note(path: Path, rows: Iterable[dict[str, Any]]) -> None:
     write_text(path, text.getvalue())
 
 
+def check(path: Path) -> None:
+    """Raise InputError, before anything is run, where no such table can be written."""
+    _read(path)
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise InputError(f"--record = {path}: must be a file in a folder that there is")
+
+
 def missed_in(path: Path) -> set[tuple[str, str]]:
     """(case, quantity) of the bars that a table has as missed. Raises InputError where there is no such table."""
     if not path.is_file():
@@ -45,7 +52,7 @@ def missed_in(path: Path) -> set[tuple[str, str]]:
 def _read(path: Path, option: str = "--record") -> list[dict[str, str]]:
     if not path.is_file():
         return []
-    with path.open(encoding="utf-8", newline="") as file:
+    with path.open(encoding="utf-8", errors="replace", newline="") as file:
         table = csv.DictReader(file)
         rows = list(table)
     if tuple(table.fieldnames or ()) != COLUMNS:

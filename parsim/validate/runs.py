@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import parsim
-from parsim.output.reader import is_output
+from parsim.errors import InputError
+from parsim.output.reader import Run, is_output
 from parsim.report.measures import Published, published
 from parsim.validate.bars import Bar, bars
 from parsim.validate.measures import MEASURES
 from parsim.validate.page import write
-from parsim.validate.record import missed_in, note, shown
+from parsim.validate.record import check, missed_in, note, shown
 
 MISSED = 3
 
@@ -31,7 +32,8 @@ def validate(
     hands: tuple[int, int] = (1, 1),
     tables: tuple[Path | None, Path | None] = (None, None),
 ) -> int:
-    """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed.
+    """Run what is named at a level and print a row for each bar; returns 3 where one is missed, 1 where a run failed
+    or cannot be measured.
 
     Runs whose output is in `out` go on there, if they are of the same case and not done, and out/index.html shows all
     that was run. `hands`: so many runs side by side, each on so many ranks. `tables`, of results: the rows of what has
@@ -39,6 +41,8 @@ def validate(
     """
     held, (record, known) = bars(list(names), level), tables
     excused = missed_in(known) if known else set()
+    if record:
+        check(record)
     with tempfile.TemporaryDirectory() as scratch:
         rows = list(_rows(held, Path(out or scratch), hands, as_json))
     if record:
@@ -75,10 +79,19 @@ def _judged(each: list[Bar], out: Path | None, quiet: bool) -> Iterator[dict[str
     run = parsim.open(out) if out else None
     numbers = {number.quantity: number for number in published(run)} if run else {}
     for bar in each:
-        row = judged(bar, MEASURES[bar.measure](run, **bar.arguments) if run else None, numbers.get(bar.quantity))
+        row = judged(bar, measured(bar, run) if run else None, numbers.get(bar.quantity))
         if not quiet:
             print(told(row), flush=True)
         yield row
+
+
+def measured(bar: Bar, run: Run) -> float | None:
+    """What a bar measures; None, and why on the standard error, where this run has nothing of the kind."""
+    try:
+        return MEASURES[bar.measure](run, **bar.arguments)
+    except (InputError, LookupError, ValueError) as error:
+        print(f"{bar.case}: {bar.quantity}: cannot be measured: {error}", file=sys.stderr)
+        return None
 
 
 def _run(path: Path, out: Path, ranks: int) -> bool:
@@ -129,7 +142,7 @@ def _plain(row: dict[str, Any]) -> dict[str, Any]:
 def told(row: dict[str, Any]) -> str:
     """A row as a line of text."""
     if row["value"] is None:
-        return f"  {row['quantity']}: the run failed"
+        return f"  {row['quantity']}: no value; the run failed, or it has nothing to measure"
     words = f"  {'met   ' if row['passed'] else 'MISSED'} {row['quantity']}: {row['value']:.6g} {row['unit']}"
     words += f", reference {shown(row['reference'])}, error {row['error']:.2g}, bar {row['bar']:.2g}"
     return words + (f", the document's own error {row['document']:.2g}" if row["document"] is not None else "")

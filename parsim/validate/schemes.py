@@ -19,9 +19,8 @@ from parsim.output.frames import write_text
 from parsim.report.measures import published
 from parsim.report.page import page, section, table
 from parsim.validate.bars import Bar, bars
-from parsim.validate.measures import MEASURES
 from parsim.validate.record import shown
-from parsim.validate.runs import ended, judged
+from parsim.validate.runs import ended, judged, measured
 
 REFUSED, FAILED = "refused", "failed"
 
@@ -85,16 +84,8 @@ def _told(path: Path, each: Sequence[Bar], kind: str, folder: Path, ranks: int) 
         return Told({}, REFUSED if ran.returncode == BAD_INPUT else FAILED, said)
     run = parsim.open(out)
     numbers = {number.quantity: number for number in published(run)}
-    rows = {bar.quantity: judged(bar, _measured(bar, run), numbers.get(bar.quantity)) for bar in each}
+    rows = {bar.quantity: judged(bar, measured(bar, run), numbers.get(bar.quantity)) for bar in each}
     return Told(rows, time=run.info["wall_s"])
-
-
-def _measured(bar: Bar, run: Any) -> float | None:
-    """What a bar measures, None where this run has nothing of the kind."""
-    try:
-        return MEASURES[bar.measure](run, **bar.arguments)
-    except (InputError, LookupError, ValueError):
-        return None
 
 
 def _lines(held, kinds, found):

@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from parsim.case.types import Count, Real, Share, Table
+from parsim.case.types import LEAST, Count, Real, Share, Table
 from parsim.fluid.simps.fields import FIELDS
 from parsim.geometry.faces import SIDES, names_of_walls, velocities_of_walls
 
@@ -23,7 +23,7 @@ class Settings(Table):
         "wendland_c2", description="weight of the sums over neighbours; the article's is mps, re / r - 1"
     )
     support: Real = Field(2.6, ge=2.1, le=4, description="radius of the support over the spacing; the article's is 2.1")
-    courant: Annotated[Real, Field(gt=0, le=1)] = Field(
+    courant: Annotated[Real, Field(ge=LEAST, le=1)] = Field(
         0.2, description="time step over spacing / largest speed, where run.cfl is 1"
     )
     sound: Real = Field(

@@ -8,7 +8,7 @@ import numpy as np
 
 from parsim.case.model import Body
 from parsim.report.curves import INK, LINES, figure, name_ends
-from parsim.report.measures import MANY, asked, columns, published
+from parsim.report.measures import MANY, asked, columns, published, wet
 from parsim.report.page import section, table
 from parsim.report.scene import body_colours
 
@@ -40,11 +40,11 @@ def body_tracks(run: Run) -> dict[str, dict[str, np.ndarray]]:
     series = columns(run, "bodies")
     if series is None:
         return {}
-    written = set(series["body"].tolist())
+    order = np.argsort(series["body"], kind="stable")
+    written, first = np.unique(series["body"][order], return_index=True)
+    rows = dict(zip(written.tolist(), np.split(order, first[1:]), strict=True))
     return {
-        name: {key: values[series["body"] == name] for key, values in series.items()}
-        for name in run.body_names
-        if name in written
+        name: {key: values[rows[name]] for key, values in series.items()} for name in run.body_names if name in rows
     }
 
 
@@ -64,11 +64,12 @@ def largest_x(track: Mapping[str, np.ndarray], end: float) -> tuple[float, float
 
 
 def at_time(track: Mapping[str, np.ndarray], key: str, time: float) -> float | None:
-    """The value of a column at ``time`` (s), None outside the track."""
+    """The value of a column at ``time`` (s), None outside the track and where the body is not there."""
     times = track["time"]
     if not len(times) or not times[0] <= time <= times[-1]:
         return None
-    return float(np.interp(time, times, track[key]))
+    value = float(np.interp(time, times, track[key]))
+    return value if np.isfinite(value) else None
 
 
 def draught(run: Run, name: str, track: Mapping[str, np.ndarray]) -> float | None:
@@ -90,7 +91,9 @@ def draught(run: Run, name: str, track: Mapping[str, np.ndarray]) -> float | Non
 
 
 def archimedes_draught(run: Run, name: str) -> float | None:
-    """The draught (m) of a level body at rest; None if it would sink."""
+    """The draught (m) of a level body at rest; None if it would sink, or there is no water."""
+    if not wet(run):
+        return None
     body = run.case["bodies"][run.body_names.index(name)]
     shape, water = _shape(body), run.case["water"].get("density", 1000.0)
     density = body.get("density") or body["mass"] / shape.volume
@@ -145,7 +148,8 @@ def trajectories(run: Run) -> Figure | None:
         for number, (name, track) in enumerate(tracks.items()):
             style = {"linewidth": 0.6, "alpha": 0.6} if len(tracks) >= MANY else {"linewidth": 1.8}
             each.plot(track["time"], track[key], LINES[number % 4], color=colours[name], **style)
-            ends.append((name, track["time"][-1], track[key][-1], colours[name]))
+            there = np.flatnonzero(np.isfinite(track[key]))  # a floe may have left, or be still to come
+            ends += [(name, track["time"][k], track[key][k], colours[name]) for k in there[-1:]]
         if len(tracks) < MANY:
             name_ends(each, ends)
         each.set_xlabel("time (s)")

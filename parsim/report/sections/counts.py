@@ -37,9 +37,11 @@ def lines(run: Run) -> list[str]:
     counts = columns(run, "counts")
     if counts is None or not wet(run):
         return []
-    drift = np.max(np.abs(counts["volume"] / counts["volume"][0] - 1))
+    first = counts["volume"][0]
     leaks = [f"{counts[name].max()} {name.replace('_', ' ')}" for name in LEAKS if name in counts]
-    volume = "" if flows_through(run) else f"Volume within {percent(drift)} of its first value; "
+    volume = ""
+    if first > 0 and not flows_through(run):
+        volume = f"Volume within {percent(np.max(np.abs(counts['volume'] / first - 1)))} of its first value; "
     told = f"{volume}particles at most {', '.join(leaks)}."
     return [told[0].upper() + told[1:]]
 
@@ -51,8 +53,9 @@ def volume(run: Run) -> Figure | None:
         return None
     drawn, axes = figure(1, 2, 3.0)
     first = series["volume"][0]
-    axes[0, 0].plot(series["time"], 100 * (series["volume"] / first - 1), color=WATER, linewidth=1.6)
-    axes[0, 0].set_ylabel(f"volume (%, against {first * 1e3:.4g} l)")
+    change = 100 * (series["volume"] / first - 1) if first > 0 else 1e3 * series["volume"]
+    axes[0, 0].plot(series["time"], change, color=WATER, linewidth=1.6)
+    axes[0, 0].set_ylabel(f"volume (%, against {first * 1e3:.4g} l)" if first > 0 else "volume (l)")
     for name in LEAKS:
         if name in series:
             axes[0, 1].step(series["time"], series[name], where="post", label=name.replace("_", " "), linewidth=1.4)

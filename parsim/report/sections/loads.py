@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from parsim.report.curves import ACCENT, FAINT, WATER, figure
-from parsim.report.measures import columns
+from parsim.report.measures import MANY, columns
 from parsim.report.page import section
 
 if TYPE_CHECKING:
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
     from parsim.output.reader import Run
     from parsim.report.build import Page
+
+MOST = 6  # of many bodies, that are shown
 
 
 def parts(page: Page) -> str:
@@ -23,7 +27,8 @@ def parts(page: Page) -> str:
             "loads",
             loads(page.run),
             "Curves of forces on each body.",
-            "Forces along the flow (fx) and upward (fz), as means over a step.",
+            f"Forces along the flow (fx) and upward (fz), as means over a step; where there are {MANY} bodies or more, "
+            f"on the {MOST} with the largest by water and contacts.",
         ),
     )
 
@@ -33,7 +38,7 @@ def loads(run: Run) -> Figure | None:
     series = columns(run, "loads")
     if series is None:
         return None
-    names = list(dict.fromkeys(series["body"].tolist()))
+    names = _shown(series)
     drawn, axes = figure(len(names), 2, 1.7, sharex=True)
     colours = {"water": WATER, "contact": ACCENT, "gravity": FAINT}
     for row, name in zip(axes, names, strict=True):
@@ -46,3 +51,16 @@ def loads(run: Run) -> Figure | None:
     for each in axes[-1]:
         each.set_xlabel("time (s)")
     return drawn
+
+
+def _shown(series: dict[str, np.ndarray]) -> list[str]:
+    """Names of the bodies, in their order; of many those on which water and contacts have had the largest forces."""
+    names = list(dict.fromkeys(series["body"].tolist()))
+    if len(names) < MANY:
+        return names
+    known, body = np.unique(series["body"], return_inverse=True)
+    force, most = np.nan_to_num(np.hypot(series["fx"], series["fz"])), np.zeros(len(known))
+    acts = np.isin(series["kind"], ("water", "contact"))
+    np.maximum.at(most, body[acts], force[acts])
+    largest = set(known[np.argsort(-most, kind="stable")[:MOST]].tolist())
+    return [name for name in names if name in largest]

@@ -1,7 +1,9 @@
 """Joints that prescribe a motion: steady, by a table of times, to and fro, around an axis."""
 
+import bisect
 import itertools
 import math
+import operator
 from typing import Annotated, Literal
 
 import numpy as np
@@ -25,6 +27,11 @@ class SteadyTable(DrivingTable):
         """See `DrivingTable`."""
         return Pose(time * np.array(self.velocity), time * np.array(self.spin))
 
+    def ways(self):
+        """See `DrivingTable`."""
+        yield f"velocity = {list(self.velocity)}", self.velocity, _ZERO
+        yield f"spin = {list(self.spin)}", _ZERO, self.spin
+
 
 class ScheduleTable(DrivingTable):
     """Places at given times, straight in between, at rest after the last."""
@@ -36,9 +43,16 @@ class ScheduleTable(DrivingTable):
 
     def pose(self, time, centre):
         """See `DrivingTable`."""
-        rows = np.array([(*row, *(0.0,) * (7 - len(row))) for row in self.rows])
+        after = bisect.bisect_right(self.rows, time, key=operator.itemgetter(0))  # in every step, of many rows
+        near = self.rows[max(after - 1, 0) : after + 1]
+        rows = np.array([(*row, *(0.0,) * (7 - len(row))) for row in near])
         x = np.array([np.interp(time, rows[:, 0], column) for column in rows[:, 1:].T])
         return Pose(x[:3], np.radians(x[3:]))
+
+    def ways(self):
+        """See `DrivingTable`."""
+        for number, row in enumerate(self.rows):
+            yield f"rows.{number} = {list(row)}", row[1:4], (*row[4:], *_ZERO)[:3]
 
     def faults(self, body, planar):
         """See `JointTable`."""
@@ -67,6 +81,11 @@ class SwayTable(DrivingTable):
         share = math.sin(2.0 * math.pi * self.frequency * time + phase) - math.sin(phase)
         return Pose(share * np.array(self.amplitude), share * np.radians(self.turn))
 
+    def ways(self):
+        """See `DrivingTable`."""
+        yield f"amplitude = {list(self.amplitude)}", self.amplitude, _ZERO
+        yield f"turn = {list(self.turn)}", _ZERO, self.turn
+
 
 class SwingTable(DrivingTable):
     """Around an axis, at constant angular speed."""
@@ -79,7 +98,7 @@ class SwingTable(DrivingTable):
 
     def pose(self, time, centre):
         """See `DrivingTable`."""
-        along = np.array(self.axis) / np.linalg.norm(self.axis)
+        along = np.array(self.axis) / math.hypot(*self.axis)
         angle = self.speed * min(time, self.until or math.inf)
         arm = centre - np.array(self.pivot)
         turned = (
@@ -88,6 +107,10 @@ class SwingTable(DrivingTable):
             + along * (along @ arm) * (1.0 - math.cos(angle))
         )
         return Pose(turned - arm, angle * along)
+
+    def ways(self):
+        """See `DrivingTable`."""
+        yield f"axis = {list(self.axis)}", _ZERO, self.axis
 
     def faults(self, body, planar):
         """See `JointTable`."""

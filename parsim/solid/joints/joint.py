@@ -1,5 +1,6 @@
 """What every joint is: a table that ties one body to the world."""
 
+from collections.abc import Iterator
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -38,13 +39,15 @@ class DrivingTable(JointTable):
         """`Pose` of the body, whose centre (3,), m, was there at the start, `time`, s, after it began."""
         raise NotImplementedError
 
+    def ways(self) -> Iterator[tuple[str, tuple[float, ...], tuple[float, ...]]]:
+        """Where it leads: of each key that says so its name, shifts (3,) and vectors of turns (3,), of any size."""
+        raise NotImplementedError
+
     def faults(self, body, planar):
         """See `JointTable`."""
         if any((*body.velocity, *body.spin)) or body.fixed or body.released is not None:
             yield "body: its motion is prescribed; leave out velocity, spin, fixed and released of the body"
-        if planar:
-            for time in (0.1, 0.3, 1.0):
-                pose = self.pose(time, np.array([v if v != "float" else 0.0 for v in body.position]))
-                if abs(pose.shift[1]) > 1e-12 or np.abs(pose.turn[[0, 2]]).max() > 1e-12:
-                    yield "kind: leads out of the plane of a 2D case; bodies move in x and z and turn about y only"
-                    return
+        for key, shift, turn in self.ways() if planar else ():
+            if shift[1] or turn[0] or turn[2]:
+                yield f"{key}: leads out of the plane of a 2D case; bodies move in x and z and turn about y only"
+                return

@@ -105,6 +105,10 @@ class BedShape(Ground, Meshed):
             np.add.at(area, top[:, k], share)
         return np.hstack([points[:count], area]), [self.resolution] * 3
 
+    def number_of_samples(self, spacing, depth, planar):
+        """See `ShapeTable`: the heights, of which there are not too many, bound it."""
+        return len(self.samples(spacing, depth, planar).shares)
+
     def samples(self, spacing, depth, planar):
         """See `ShapeTable`: columns under its surface, of which patches are the tops."""
         ground, edges = self.heights, zip(self.low, self.high, strict=False)

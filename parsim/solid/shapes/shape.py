@@ -7,6 +7,8 @@ import numpy as np
 from parsim.case.types import Table
 from parsim.solid.shapes.surface import volume_under
 
+_MOST = 10**6  # samples that are made to be counted
+
 
 class ShapeTable(Table):
     """What a case may say of a shape, and what follows from it. `planar`: of a 2D case, one metre across.
@@ -112,8 +114,17 @@ class ShapeTable(Table):
         raise NotImplementedError
 
     def number_of_samples(self, spacing, depth, planar):
-        """How many `samples` there are."""
-        return len(self.samples(spacing, depth, planar).shares)
+        """How many `samples` there are; of a vast number about how many, by volume and surface."""
+        cell = spacing ** (2 if planar else 3)
+        if self.volume <= _MOST * cell:
+            return len(self.samples(spacing, depth, planar).shares)
+        points, quads = self.surface()
+        area = sum(
+            0.5 * np.linalg.norm(np.cross(*(points[quads[:, k]] - points[quads[:, 0]] for k in pair)), axis=1)
+            for pair in ((1, 2), (2, 3))
+        ).sum()
+        rim = area - 2.0 * self.volume if planar else area  # both ends of what is a metre across are no surface
+        return round(min(self.volume, rim * depth) / cell)
 
     def samples(self, spacing, depth, planar):
         """`Samples` at about the `spacing`, m, down to a `depth`, m, below the surface."""
