@@ -14,8 +14,8 @@ import numpy as np
 
 from parsim.domain import exact_sums
 from parsim.domain.balance import accumulate, even_cuts, uneven
+from parsim.domain.images import Images
 from parsim.domain.slab import Slab
-from parsim.machine.jit import kernel
 from parsim.machine.timers import Timers
 from parsim.particles.cells import HALO, LAYERS, REACH, Stack, holding, occupied, sort_by_cell, sort_key, spread
 from parsim.particles.state import POSITION, Particles
@@ -84,9 +84,7 @@ class Domain:
         """
         p = self.particles
         with self.timers("halo"):
-            for name in names if self._image_at.size else ():
-                shift = self._image_shift[POSITION.index(name)] if name in POSITION else self._no_shift
-                copy_images(getattr(p, name), self._image_at, self._image_of, shift)
+            self._images.copy(p, names)
             ends = (slice(0, self.own.start), slice(self.own.stop, len(p)))
             out = [np.stack([getattr(p, name)[at] for name in names]).astype(float, copy=False) for at in self._send]
             back = [np.empty((len(names), at.stop - at.start)) for at in ends]
@@ -106,27 +104,39 @@ class Domain:
         return np.repeat(marks.view(bool), np.diff(self.first))
 
     def sum(
-        self, values: np.ndarray, units: np.ndarray | float, index: np.ndarray | None = None, count: int = 1
+        self,
+        values: np.ndarray,
+        units: np.ndarray | float,
+        index: np.ndarray | None = None,
+        count: int = 1,
+        also: np.ndarray | None = None,
     ) -> np.ndarray:
         """Exact sums over all ranks of values (n, c): (c,), or (count, c) by row `index` (n,).
 
         `units`, one or as many as sums: powers of two, the same on all ranks. Nothing is lost down to 1e-18 of them;
         terms up to 1e9 and sums up to 1e12 of them fit: a sum beyond is nan, with a term beyond or no number all are.
+        also (k,) int64 becomes its sum over all ranks, by the same message.
         """
         values = np.ascontiguousarray(values, float)
         rows = np.zeros(len(values), np.int64) if index is None else index
         limbs = np.zeros((count, values.shape[1], 2), np.int64)
         units = np.array(np.broadcast_to(units, limbs.shape[:2]), float, order="C")
         good = exact_sums.accumulate(values, rows, units, limbs)
-        sums = self.comm.sum_integers(np.append(limbs.ravel(), not good))
-        total = exact_sums.value(sums[:-1].reshape(limbs.shape), units)
-        if sums[-1]:
+        more = np.zeros(0, np.int64) if also is None else also
+        sums = self.comm.sum_integers(np.concatenate([limbs.ravel(), [not good], more]))
+        more[:] = sums[limbs.size + 1 :]
+        total = exact_sums.value(sums[: limbs.size].reshape(limbs.shape), units)
+        if sums[limbs.size]:
             total[:] = np.nan
         return total[0] if index is None else total
 
-    def dot(self, one: np.ndarray, two: np.ndarray, unit: float) -> float:
-        """Exact sum over all ranks of the products of one (n,) and two (n,), in `unit`: see `sum`."""
-        return float(self.sum((one * two)[:, None], unit)[0])
+    def dot(self, one: np.ndarray, two: np.ndarray, unit: float, also: np.ndarray | None = None) -> float:
+        """Exact sum over all ranks of the products of one (n,) and two (n,), in `unit`; also: see `sum`."""
+        return float(self.sum((one * two)[:, None], unit, also=also)[0])
+
+    def whole(self, numbers: np.ndarray) -> np.ndarray:
+        """Sums over all ranks of whole numbers (n,) int64, element by element."""
+        return self.comm.sum_integers(numbers)
 
     def count(self, *numbers: int) -> list[int]:
         """Sums over all ranks of whole numbers."""
@@ -264,7 +274,7 @@ class Domain:
         shared = self._shared(stored)
         self._send = [self.own.start + np.flatnonzero(side) for side in shared]
         self.border = shared[0] | shared[1]
-        self._note_images()
+        self._images = Images(self.particles, self.own, g)
 
     def _shared(self, layer):
         """Which owned particles, given their layers (owned,), are in the halo of the left and of the right slab."""
@@ -274,26 +284,3 @@ class Domain:
             none if self.comm.left is None else layer < begin + HALO,
             none if self.comm.right is None else layer >= end - HALO,
         )
-
-    def _note_images(self):
-        """Owned images, the particles they copy, and the shifts between them."""
-        p, own = self.particles, np.arange(self.own.start, self.own.stop)
-        self._image_at = own[p.image[own] == 1]
-        self._image_of = self._image_at
-        if self._image_at.size:
-            real = own[p.image[own] == 0]
-            real = real[np.argsort(p.id[real])]
-            self._image_of = real[np.searchsorted(p.id[real], p.id[self._image_at])]
-        self._no_shift = np.zeros(self._image_at.size)
-        self._image_shift = [self._no_shift]
-        for name, period in zip(("y", "z"), self.grid.period[1:], strict=True):
-            field = getattr(p, name)
-            offset = field[self._image_at] - field[self._image_of]
-            self._image_shift.append(np.rint(offset / period) * period if period else self._no_shift)
-
-
-@kernel
-def copy_images(field, at, of, shift):
-    """field[at] = field[of] + shift, element by element."""
-    for k in range(at.size):
-        field[at[k]] = field[of[k]] + shift[k]

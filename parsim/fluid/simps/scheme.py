@@ -13,6 +13,7 @@ from parsim.coupling.sides import press
 from parsim.fluid import friction, moves, surface, walls
 from parsim.fluid.reference import Lattice
 from parsim.fluid.simps import sweeps, tables
+from parsim.fluid.simps.coarse import Coarse
 from parsim.fluid.simps.fields import NORMAL, STEEP, VISCOUS
 from parsim.fluid.simps.solver import Solver
 from parsim.geometry.faces import period
@@ -33,7 +34,8 @@ class SIMPS:
         self.lattice = lattice = Lattice(case.dimensions, case.spacing, choice.support, choice.weight)
         self.density, self.sound, self.viscosity = water.density, case.sound_speed, water.viscosity
         self.mass = water.density * lattice.volume
-        self.solver = Solver(choice.tolerance, choice.iterations)
+        coarse = Coarse(case, lattice) if choice.preconditioner == "lattice" else None
+        self.solver = Solver(choice.tolerance, choice.iterations, coarse)
         self._give = 1.0 / (water.density * self.sound**2)  # 1/Pa: compressibility
         self._endless = np.isfinite(period(case))
         self._courant, self._slowest = case.run.cfl * choice.courant, _SLOWEST * case.speed
@@ -145,7 +147,7 @@ class SIMPS:
         p, near, choice, lattice = flow.particles, flow.near, self._choice, self.lattice
         if self._pairs.size != near.index.size:
             self._pairs = np.empty(near.index.size)
-        equation = tables.Equation(self._pairs, *np.zeros((2, len(p))))
+        equation = tables.Equation(self._pairs, *np.zeros((3, len(p))))
         stiff = self.density / (dt * dt * self._laplacian)
         balance = tables.Balance(
             0.5 * lattice.spread,

@@ -52,6 +52,11 @@ class Settings(Table):
     tolerance: Annotated[Real, Field(ge=1e-14, le=0.1)] = Field(
         1e-5, description="residual of the pressure equation over its right-hand side"
     )
+    preconditioner: Literal["lattice", "diagonal"] = Field(
+        "lattice",
+        description="what the solver of the pressure equation looks through: a lattice of nodes, with few iterations "
+        "for any number of particles, or the diagonal alone, whose messages stay short on very many ranks",
+    )
     iterations: Count = Field(2000, description="iterations of the solver after which a run is given up")
 
     @property

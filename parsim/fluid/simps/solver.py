@@ -1,4 +1,4 @@
-"""Conjugate gradients for the pressure equation, preconditioned with its diagonal (Saad 2003, alg. 9.1).
+"""Conjugate gradients for the pressure equation, preconditioned (Saad 2003, alg. 9.1) with its diagonal and a lattice.
 
 All sums are exact, and everything else is of one particle or one row: the same bits on any ranks and threads.
 """
@@ -18,11 +18,11 @@ class Solver:
     """Solves for the field `p` of a domain, beginning with what it holds, by a direction in the field `way`.
 
     iterations, residual: those of the last solution; the residual is over the right-hand side, both in the norm of the
-    inverse diagonal. tolerance: of that; most: iterations.
+    inverse diagonal. tolerance: of that; most: iterations; coarse: a `Coarse`, or None for the diagonal alone.
     """
 
-    def __init__(self, tolerance, most):
-        self.tolerance, self.most = tolerance, most
+    def __init__(self, tolerance, most, coarse=None):
+        self.tolerance, self.most, self.coarse = tolerance, most, coarse
         self.iterations, self.residual = 0, 0.0
 
     def solve(self, flow, equation, mobility, factor, time):
@@ -44,24 +44,41 @@ class Solver:
         unit = power_of_two(max(float(domain.max(np.abs(sizes).max(initial=0.0))[0]), _SMALLEST))
         left, whole, held = domain.sum(sizes, unit).tolist()
         scale = max(whole, held)
-        wanted, step, self.iterations = self.tolerance**2 * scale, z, 0
+        wanted, slope, self.iterations = self.tolerance**2 * scale, left, 0
+        if self.coarse and left > wanted:
+            self.coarse.prepare(flow, equation, diagonal)
+            left, slope = self._look_through(flow, r, z, left)
+        step = z
         while left > wanted or math.isnan(left):
             if self.iterations == self.most or math.isnan(left):
                 raise RunError(self._told(left, scale, time))
             p.way[at] = step
             image, pushed = self._applied(flow, equation, mobility, factor, "way", out, send=True)
-            unit = power_of_two(max(left, _SMALLEST))
-            length = left / domain.dot(step, image, unit)
+            unit = power_of_two(max(slope, _SMALLEST))
+            length = slope / domain.dot(step, image, unit)
             x += length * step
             r -= length * image
             forces = None if forces is None else forces + length * pushed
             z = inverse * r
-            before, left = left, domain.dot(r, z, unit)
-            step = z + left / before * step
+            before, (left, slope) = slope, self._look_through(flow, r, z, left)
+            step = z + slope / before * step
             self.iterations += 1
         self.residual = math.sqrt(left / scale) if scale > 0.0 else 0.0
         p.p[at] = x
         return forces
+
+    def _look_through(self, flow, r, z, left):
+        """Add to z (fluid,), r (fluid,) times the inverse diagonal, what the lattice has of it.
+
+        left: about the product of r and the first z. Returns that, and the product of r and the last.
+        """
+        unit = power_of_two(max(left, _SMALLEST))
+        if self.coarse is None:
+            left = flow.domain.dot(r, z, unit)
+            return left, left
+        sums = self.coarse.gather(r, math.sqrt(left))
+        left = flow.domain.dot(r, z, unit, sums)
+        return left, left + self.coarse.spread(sums, z)
 
     def _applied(self, flow, equation, mobility, factor, name, out, send=False):
         """The matrix times the field of this `name`, (fluid,), and its forces on bodies; `send`: to the halos first."""

@@ -125,7 +125,7 @@ def assemble(at, lists, motion, state, weight, bodies, balance, equation):
     p, c, n, surface, scale = state
     body, (area, _, wet), volume = bodies
     half, rate, soft, relaxed, number, top, below, dt, share, hx, hy, hz = balance
-    pairs, diagonal, right = equation.pairs, equation.diagonal, equation.right
+    pairs, diagonal, right, water = equation.pairs, equation.diagonal, equation.right, equation.water
     for row in prange(at.size):
         i = at[row]
         xi, yi, zi, ui, vi, wi = x[i], y[i], z[i], u[i], v[i], w[i]
@@ -140,6 +140,7 @@ def assemble(at, lists, motion, state, weight, bodies, balance, equation):
             every += wt
             rises += wt * (ex * dx + ey * dy + ez * dz)
             opens += g * ((u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz)
+        water[i] = every
         ui, vi, wi = ui - hx / rate, vi - hy / rate, wi - hz / rate
         for t in range(np.uint64(middle[i]), np.uint64(end[i])):
             j = index[t]

@@ -47,11 +47,15 @@ class Balance(NamedTuple):
 
 
 class Equation(NamedTuple):
-    """The pressure equation: weight of each listed pair (pairs,), diagonal and right-hand side by particle (n,)."""
+    """The pressure equation: weight of each listed pair (pairs,), diagonal and right-hand side by particle (n,).
+
+    water (n,): the sum of the weights of its pairs, what of the diagonal does not hold the pressure to zero.
+    """
 
     pairs: np.ndarray
     diagonal: np.ndarray
     right: np.ndarray
+    water: np.ndarray
 
 
 class Slope(NamedTuple):
