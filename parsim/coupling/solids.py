@@ -25,10 +25,10 @@ class Solids:
     """Walls, gate and bodies of a case with the samples that they show to the water, as attributes.
 
     bodies, contacts; pull, on all that is free; openings; gate, or None; samples, of the bodies; films; walls.
-    `sources`: all that has samples.
+    `sources`: all that has samples. shares: see `Contacts`.
     """
 
-    def __init__(self, case, layers, lattice, timers):
+    def __init__(self, case, layers, lattice, timers, shares=None):
         self.timers, self._scales = timers, scales(case)
         self.bodies = from_case(case)
         self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
@@ -38,7 +38,7 @@ class Solids:
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
         self.pull = Pull(case)
-        self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [], self.pull.at)
+        self.contacts = Contacts(self.bodies, case, [self.gate] if self.gate else [], self.pull.at, shares)
         self.friction = None
         if case.water.friction is not None:
             self.friction = Friction(case, self.bodies, self.samples, self.gate)

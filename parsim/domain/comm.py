@@ -121,6 +121,13 @@ class Comm:
         return result
 
     @waits
+    def gather(self, array: np.ndarray, counts: Sequence[int] | np.ndarray) -> np.ndarray:
+        """The floats that each rank gives, of any shape, one rank after another; counts (ranks,): how many of each."""
+        result = np.empty(int(np.sum(counts)))
+        self._mpi.Allgatherv(array, [result, np.asarray(counts, np.int64).tolist(), MPI.DOUBLE])
+        return result
+
+    @waits
     def share(self, item: Any) -> Any:
         """What rank 0 holds, on every rank."""
         return self._mpi.bcast(item)

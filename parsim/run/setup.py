@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from parsim.coupling.solids import Solids
 from parsim.domain.domain import Domain
 from parsim.domain.grid import grid_of
+from parsim.domain.shares import Shares
 from parsim.particles.neighbours import Neighbours
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ class Models:
     def __init__(self, case: Case, comm: Comm, timers: Timers) -> None:
         self.reach = case.reach
         self.scheme = case.water.scheme.scheme(case, timers)
-        self.solids = Solids(case, case.layers, self.scheme.lattice, timers)
+        shares = Shares(comm) if comm.size > 1 else None
+        self.solids = Solids(case, case.layers, self.scheme.lattice, timers, shares)
         self.domain = Domain(grid_of(case), comm, self.solids.sources, case.water.scheme.fields, timers)
         share = (case.reach / self.scheme.lattice.radius) ** case.dimensions
         self.near = Neighbours(self.scheme.lattice.count * share * _ROOM)

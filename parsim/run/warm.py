@@ -7,6 +7,7 @@ code that it compiled itself, and the ranks of a cold start do not compile the s
 
 import fcntl
 import json
+import math
 import os
 import pickle
 import subprocess
@@ -176,18 +177,22 @@ def exercise(part: str) -> None:
 
 
 def _touch(case):
-    """One step of the bodies and the gate of a case without water, soft and hard."""
+    """One step of the bodies and the gate of a case without water, soft and hard, shared out or not."""
     import numpy as np
 
     from parsim.boundary.gate import Gate
+    from parsim.domain.comm import Comm
+    from parsim.domain.shares import Shares
     from parsim.solid.bodies import from_case
     from parsim.solid.contacts import Contacts
     from parsim.solid.laws.impulse import ImpulseLaw
 
-    for law in (case.contacts.law, ImpulseLaw.model_validate("impulse")):
+    soft, hard, comm = case.contacts.law, ImpulseLaw.model_validate("impulse"), Comm()
+    pairs, islands = Shares(comm, 0.0, 0.0), Shares(comm, 0.0, math.inf)
+    for law, shares in ((soft, None), (soft, pairs), (soft, islands), (hard, pairs)):
         bodies = from_case(case)
         given = case.model_copy(update={"contacts": case.contacts.model_copy(update={"law": law})})
-        contacts = Contacts(bodies, given, [Gate(case)])
+        contacts = Contacts(bodies, given, [Gate(case)], shares=shares)
         contacts.step(bodies, np.zeros((len(bodies), 6)), 0.0, 1e-4)
         contacts.elastic_energy()
 

@@ -195,7 +195,7 @@ def _load(m, tank, ab, n, arm, given):
 
 @kernel
 def rate_balls(m, touch, which, steps):
-    """Add to the RATE of their bodies what those of the pairs `which` that are balls need; see `substeps._longest`.
+    """Add to the RATE of their bodies what those of the pairs `which` that are balls need; see `rates.longest_step`.
 
     `steps`: in half a period of what moves, and of what is at rest.
     """
@@ -224,7 +224,7 @@ def _square(m, touch, a, b, deep):
 
 @inlined
 def _calm(m, touch, a, b, deep, n):
-    """Whether two balls lie at rest on each other; see `substeps._calm`."""
+    """Whether two balls lie at rest on each other; see `rates._calm`."""
     square, light = _square(m, touch, a, b, deep), m[a, LIGHT]
     v, _ = _slip(m, a, b, n, _arms(m, a, b, deep))
     pull = 0.0

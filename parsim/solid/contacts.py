@@ -32,24 +32,26 @@ from parsim.solid.search import (
 from parsim.solid.shapes import elements_of
 from parsim.solid.shapes.forms import forms_of
 from parsim.solid.springs import hasten, held_by_springs
-from parsim.solid.substeps import advance, elastic
+from parsim.solid.substeps import elastic
 from parsim.solid.tanks import KEPT, recall_tanks, room_for_tanks
+from parsim.solid.together import Together
 
 _OVERLAP = 0.01  # of the least width of a body, above which it is doubtful
 _SHARE = 0.1  # of the smallest edge that a body may move in one step
 
 
 class Contacts:
-    """Moves the bodies of a case, deterministically: every rank does the same and gets the same bits.
+    """Moves the bodies of a case, deterministically: all that hold them get the same bits, whoever finds what.
 
     gravity_at: what pulls at a time, (3,), m/s2; that of the case if left out.
     driven: plates with half (3,), m, `centre` and `velocity` at a time (`parsim.boundary.gate.Gate`).
+    shares: among whom the work is shared out (`parsim.domain.shares.Shares`), all of whom step together; None: nobody.
     Attributes: dissipated, J, energy lost in contacts so far; driven_work, J, work of these on bodies and on water so
     far; count, elements that touch; steps, sub-steps of the last step; residual, of hard bodies' impulses, and
     overlap, over the least width of a body that touches, the largest so far.
     """
 
-    def __init__(self, bodies, case, driven=(), gravity_at=None):
+    def __init__(self, bodies, case, driven=(), gravity_at=None, shares=None):
         self.bodies, self._driven = bodies, list(driven)
         self._ramp, self._gravity = functools.partial(ramped, case), np.array(case.gravity, float)
         self._gravity_at = gravity_at or self._ramp
@@ -64,7 +66,7 @@ class Contacts:
         self._first = np.append(first, np.full(len(self._driven), first[-1]))  # what is driven has none
         self._table = _table(bodies, cell, self._driven, material)
         self._forms = forms_of(bodies.shapes, bodies.planar, [plate.half for plate in self._driven])
-        self._beside = Beside()
+        self._beside, self.shares, self._together = Beside(), shares, Together(shares)
         self._pairs, self._shift = room_for_pairs(64)
         self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
@@ -92,7 +94,7 @@ class Contacts:
         self._grow(time, dt)
         self._gravity = np.array(self._gravity_at(time + 0.5 * dt))
         before, held = self._tied_now() if self._reacts.size else None, bodies.held(time)
-        number, slots, reach, lost = self._prepare(bodies, held, time, dt)
+        number, slots, reach, lost = self._prepare(bodies, held, time, dt, self.shares)
         self.dissipated += lost
         if self._hard:
             self.count, self.steps, lost, work, left = advance_hard(
@@ -100,8 +102,8 @@ class Contacts:
             )
             self.residual = max(self.residual, left)
         else:
-            self.count, self.steps, lost, work = advance(
-                self._table, self._touch(), number, dt, reach, self._steps_per_contact
+            self.count, self.steps, lost, work = self._together.advance(
+                self._table, self._touch(), number, (dt, reach, self._steps_per_contact)
             )
         self.dissipated, self.driven_work, self._time = self.dissipated + lost, self.driven_work + work, time + dt
         self.overlap = max(self.overlap, deepest(self._touch(), number))
@@ -157,7 +159,7 @@ class Contacts:
         self.dissipated, self.driven_work, self._time, self.overlap, self.residual = map(float, kept["totals"])
         self.count = len(self._key)
 
-    def _prepare(self, bodies, held, time, dt):
+    def _prepare(self, bodies, held, time, dt, shares=None):
         """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m,
         energy, J, in friction springs of what may touch no more)."""
         m = self._table
@@ -168,7 +170,7 @@ class Contacts:
         self._tie(bodies, time, dt)
         if len(bodies.springs):
             hasten(m, bodies.springs, dt)
-        number, reach, forgotten = self._list_pairs(bodies.planar, dt)
+        number, reach, forgotten = self._list_pairs(bodies.planar, dt, shares)
         return number, self._list_slots(number, reach), reach, forgotten
 
     def _tie(self, bodies, time, dt):
@@ -232,12 +234,12 @@ class Contacts:
             np.searchsorted(springs[:, 0], np.arange(len(self._table) + 1)),
         )
 
-    def _list_pairs(self, planar, dt):
+    def _list_pairs(self, planar, dt, shares):
         find = self._period, planar, len(self.bodies)
-        number, reach = self._beside.near_pairs(self._table, self._touch(), find, dt)
+        number, reach = self._beside.near_pairs(self._table, self._touch(), find, dt, shares)
         if number > len(self._pairs):
             self._pairs, self._shift = room_for_pairs(2 * number)
-            number, reach = self._beside.near_pairs(self._table, self._touch(), find, dt)
+            number, reach = self._beside.near_pairs(self._table, self._touch(), find, dt, shares)
         if number > 1:
             sort_pairs(self._pairs, self._shift, number)
         if number > len(self._tanks):

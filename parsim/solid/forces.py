@@ -43,25 +43,39 @@ def press(m, touch, island, lapse, span):
     time since the last call in this step, s, by which friction springs have stretched; `span`: of the kick that comes,
     s; 0 to look only. 50 ns an element that touches, 1 us a pair that overlaps.
     """
-    pairs, marks, tanks, (rows, own, which) = touch.pairs, touch.marks, touch.tanks, island
+    rows, _, which = island
     clear_loads(m, rows)
     touching = press_balls(m, touch, which, lapse, span)
     for c in which:
-        if pairs[c, FEATURE] == BALLS:
-            continue
-        apart, x, y, z = normal_of(m, touch, c)
-        area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
-        if area == 0.0:
-            for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
-                marks[slot, TOUCHING] = 0
-            load_pair(m, touch, c, 0.0, 0.0, _NO_LOAD, _NO_LOAD)
-            continue
-        touching += _push(m, touch, c, (x, y, z), area, (lapse + tanks[c, LAPSE] if span > 0.0 else 0.0, span))
+        if touch.pairs[c, FEATURE] != BALLS:
+            count, stored, sheared, force, loss = load_of(m, touch, c, lapse, span)
+            load_pair(m, touch, c, stored, sheared, force, loss)
+            touching += count
+    pull_and_date(m, touch, island, span)
+    return touching
+
+
+@kernel
+def load_of(m, touch, c, lapse, span):
+    """Of pair `c`, no balls: (elements that touch, energy in its springs, in those of friction, J, its load on body a,
+    what of it dissipates; see `_sum`)."""
+    apart, x, y, z = normal_of(m, touch, c)
+    area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
+    if area == 0.0:
+        for slot in range(touch.pairs[c, FIRST], touch.pairs[c, LAST] + 1):
+            touch.marks[slot, TOUCHING] = 0
+        return 0, 0.0, 0.0, _NO_LOAD, _NO_LOAD
+    return _push(m, touch, c, (x, y, z), area, (lapse + touch.tanks[c, LAPSE] if span > 0.0 else 0.0, span))
+
+
+@kernel
+def pull_and_date(m, touch, island, span):
+    """Add the loads of the springs of an island, and note that those of its friction are up to date for a kick."""
+    rows, own, which = island
     pull_springs(m, touch, rows[:own])
     if span > 0.0:
         for c in which:
-            tanks[c, LAPSE] = 0.0
-    return touching
+            touch.tanks[c, LAPSE] = 0.0
 
 
 @kernel
@@ -106,7 +120,7 @@ def _compliance(m, b, p, by, n):
 
 @kernel
 def _push(m, touch, c, n, total, times):
-    """Add the loads of one pair whose elements touch with the area `total`; how many there are.
+    """What `load_of` returns of a pair whose elements touch with the area `total`, m2.
 
     The dashpots share 2 b sqrt(m* k A) by area, m* taken at the centre of the touching area: restitution then depends
     neither on the number of elements nor on where the body is hit. A force that goes with the depth to the power p
@@ -132,8 +146,7 @@ def _push(m, touch, c, n, total, times):
     ahead = times[0], 0.5 * times[1] * (_parting(m, a, b, n) + light * springs)
     law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], own, strength)
     touching, sheared, pressed, force, loss = _sum(touch, first, last, n, motion, ahead, law)
-    load_pair(m, touch, c, sheared + pressed, sheared, force, loss)
-    return touching
+    return touching, sheared + pressed, sheared, force, loss
 
 
 @kernel

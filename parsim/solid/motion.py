@@ -224,15 +224,16 @@ def drift_involved(m, rows, dt):
 
 @kernel
 def driven_now(m):
-    """Of what is driven its row, place, quaternion and rotation matrix, by columns."""
+    """Of what is driven its row, place, quaternion, rotation matrix, angular momentum and spin, by columns."""
     count = 0
     for b in range(len(m)):
         count += m[b, ROLE] == DRIVEN
-    out, row = np.empty((count, 17)), 0
+    out, row = np.empty((count, 23)), 0
     for b in range(len(m)):
         if m[b, ROLE] == DRIVEN:
             out[row, 0], out[row, 1:4] = b, m[b, POSITION : POSITION + 3]
-            out[row, 4:17] = m[b, QUATERNION : QUATERNION + 13]
+            out[row, 4:20] = m[b, QUATERNION : MOMENTUM + 3]
+            out[row, 20:23] = m[b, SPIN : SPIN + 3]
             row += 1
     return out
 
@@ -242,7 +243,8 @@ def set_back(m, driven):
     """Bring what is driven back to where it was."""
     for row in range(len(driven)):
         b = int(driven[row, 0])
-        m[b, POSITION : POSITION + 3], m[b, QUATERNION : QUATERNION + 13] = driven[row, 1:4], driven[row, 4:17]
+        m[b, POSITION : POSITION + 3], m[b, SPIN : SPIN + 3] = driven[row, 1:4], driven[row, 20:23]
+        m[b, QUATERNION : MOMENTUM + 3] = driven[row, 4:20]
 
 
 @kernel

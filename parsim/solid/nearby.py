@@ -15,6 +15,8 @@ from parsim.solid.table import ALONE, DRIVEN, HALF, INVOLVED, POSITION, ROLE, TU
 
 _ROUNDING = 1e-9  # of the widest body
 _SKIN = 0.1  # of the least extent, by which more are listed than are within reach
+_LOOK = 6e-6  # s that it takes to look at two bodies, about
+_TOLD = 6  # numbers of a pair: a, b, feature, shift
 
 
 class Reach(NamedTuple):
@@ -36,8 +38,8 @@ class Beside:
         self._listed = np.zeros((0, 2), np.int64)
         self._seen, self._far = np.zeros((0, 7)), -math.inf
 
-    def near_pairs(self, m, touch, find, dt):
-        """See `near_pairs`; `find`: its period, planar and count."""
+    def near_pairs(self, m, touch, find, dt, shares=None):
+        """See `near_pairs`; `find`: its period, planar and count; shares: see `Contacts`. In no order."""
         period, planar, count = find
         far, seen = _reach(m, touch.forms, dt, count)
         if count and not (len(seen) == len(self._seen) and far + 2.0 * _changed(seen, self._seen) <= self._far):
@@ -45,7 +47,15 @@ class Beside:
             self._listed = _beside(m, Reach(period, seen[:, 3:6], self._far, planar), count)
         if not count:
             return 0, 0.0
-        return near_pairs(m, touch, self._listed, Reach(period, seen[:, 3:6], far, planar), count), far
+        near, many = Reach(period, seen[:, 3:6], far, planar), len(self._listed)
+        if shares is None or _LOOK * many < shares.least:
+            return near_pairs(m, touch, self._listed, near, count, (0, 1)), far
+        number = near_pairs(m, touch, self._listed, near, count, (shares.own, shares.count))
+        numbers = shares.counts(number)
+        if numbers.sum() <= len(touch.pairs):
+            line = shares.gather(told(touch, number), _TOLD * numbers)
+            take_pairs(m, touch, line)
+        return int(numbers.sum()), far
 
 
 @kernel
@@ -74,27 +84,29 @@ def _changed(seen, before):
 
 
 @kernel
-def near_pairs(m, touch, beside, near, count):
+def near_pairs(m, touch, beside, near, count, part):
     """Find the pairs that may touch among those `beside` each other, and mark their bodies as involved; how many.
 
     The bodies are the first `count` rows of the table. A number beyond the room for pairs says how much is needed.
+    part: which of how many parts of all that is looked at.
     A grid, then upright boxes, then separating axes. 50 us a prism; 0.5 us a ball, 4 where all are listed anew.
     """
     far, walls, ball, number = near.reach, touch.walls, _balls(m), 0
-    for k in range(len(beside)):  # balls apart from what takes long: a loop that calls much is slow where it does not
+    first, last = part[0] * len(beside) // part[1], (part[0] + 1) * len(beside) // part[1]
+    for k in range(first, last):  # balls apart from what takes long: a loop that calls much is slow where it does not
         a, b = beside[k, 0], beside[k, 1]
         if ball[a] and ball[b] and _within(m, a, b, near):
             by = _image(m, a, b, near)
             if gap_of_balls(m, a, b, by)[0] <= far:
                 number = _note(m, touch.pairs, touch.shift, number, a, b, BALLS, by)
-    for k in range(len(beside)):
+    for k in range(first, last):
         a, b = beside[k, 0], beside[k, 1]
         if not (ball[a] and ball[b]) and _within(m, a, b, near):
             by = _image(m, a, b, near)
             feature, distance = best_feature(m, touch.forms, a, b, by, near.planar)
             if distance <= far:
                 number = _note(m, touch.pairs, touch.shift, number, a, b, feature, by)
-    for a in range(count):
+    for a in range(part[0] * count // part[1], (part[0] + 1) * count // part[1]):
         if m[a, ROLE] > DRIVEN:
             for w in range(len(walls)):
                 high = _height_of_ball(m, walls, a, w) if ball[a] else above(m, touch, a, w)
@@ -200,3 +212,22 @@ def _note(m, pairs, shift, number, a, b, feature, by):
         pairs[number, KEY] = a * (len(m) + 6) + b + 6
         shift[number, 0], shift[number, 1], shift[number, 2] = by
     return number + 1
+
+
+@kernel
+def told(touch, number):
+    """The first `number` pairs as numbers, _TOLD of each, (number, _TOLD)."""
+    out = np.empty((number, _TOLD))
+    for c in range(number):
+        out[c, 0], out[c, 1], out[c, 2] = touch.pairs[c, A], touch.pairs[c, B], touch.pairs[c, FEATURE]
+        out[c, 3], out[c, 4], out[c, 5] = touch.shift[c, 0], touch.shift[c, 1], touch.shift[c, 2]
+    return out
+
+
+@kernel
+def take_pairs(m, touch, line):
+    """Note the pairs that `line` has, as all have `told` them."""
+    for c in range(len(line) // _TOLD):
+        at = c * _TOLD
+        by = line[at + 3], line[at + 4], line[at + 5]
+        _note(m, touch.pairs, touch.shift, c, int(line[at]), int(line[at + 1]), int(line[at + 2]), by)

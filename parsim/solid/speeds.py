@@ -42,7 +42,7 @@ def bound_of_speed(m, dt):
 def add_rate(m, a, b, n, square):
     """Add to the RATE of the bodies of a pair, b < 0: a wall, what moves at the square of a frequency, 1/s2, along `n`.
 
-    Row sums of the matrix of k/m* n n: see `substeps._longest`.
+    Row sums of the matrix of k/m* n n: see `rates.longest_step`.
     """
     u, v, w = abs(n[0]), abs(n[1]), abs(n[2])
     for body in (a, b):

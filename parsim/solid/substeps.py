@@ -2,32 +2,19 @@
 
 import math
 
-from parsim.machine.jit import kernel
-from parsim.solid.balls import CALM, rate_balls
-from parsim.solid.forces import coefficients, compliance, free_time, hardness, press, relative_motion, velocity_at
-from parsim.solid.heaps import advance_heap, is_heap
-from parsim.solid.hollows import normal_by_elements
-from parsim.solid.islands import islands_of
-from parsim.solid.laws.foundation import FOUNDATION
-from parsim.solid.motion import (
-    alone,
-    answer,
-    drift_driven,
-    drift_involved,
-    driven_now,
-    kick_involved,
-    loads_on,
-    set_back,
-)
-from parsim.solid.search import AREA, CRUSHED, DEPTH, FEATURE, FIRST, LAST, POINT, ROLL, STRETCH, A, B
-from parsim.solid.separation import BALLS, FIELD, ROUND_A, overlap_share, ramp_of
-from parsim.solid.speeds import add_rate
-from parsim.solid.springs import STEPS, held_by_springs, rate_springs
-from parsim.solid.table import POSITION, RATE, SWING, three
-from parsim.solid.tanks import LAPSE, SHARE, SHEAR, STORED, restrain
-from parsim.solid.touch import centre_of, measure, normal_of, show
+import numpy as np
 
-_AT_REST = 5  # steps in half a period of what lies or is pressed together
+from parsim.machine.jit import kernel
+from parsim.solid.forces import coefficients, free_time, hardness, press
+from parsim.solid.heaps import advance_heap, is_heap
+from parsim.solid.islands import islands_of
+from parsim.solid.motion import alone, drift_driven, drift_involved, driven_now, kick_involved, set_back
+from parsim.solid.rates import longest_step
+from parsim.solid.search import AREA, CRUSHED, DEPTH, FIRST, LAST, ROLL, STRETCH, A, B
+from parsim.solid.springs import held_by_springs, rate_springs
+from parsim.solid.table import LOAD, TOTAL, three
+from parsim.solid.tanks import LAPSE, SHEAR, STORED, restrain
+from parsim.solid.touch import measure, normal_of
 
 
 @kernel
@@ -41,143 +28,129 @@ def advance(m, touch, number, dt, reach, steps_per_contact):
     Measured for steps of 0.2 ms on a busy core: 9 blocks apart 25 us; jostling between walls and gate 0.9 ms; a stack
     of three at rest 1.3 ms (76 sub-steps); 9 blocks pressed together, 20 pairs, 2.7 ms (45 sub-steps).
     """
+    islands, notes = isolate(m, touch, number, dt)
+    advance_islands(m, touch, islands, np.arange(len(islands.first)), (dt, reach, steps_per_contact), notes)
+    return conclude(m, islands, dt, notes)
+
+
+@kernel
+def isolate(m, touch, number, dt):
+    """Take what touches nothing over the step `dt`, s; (`Islands` of the rest, notes of a step).
+
+    notes: what is driven, as `motion.driven_now` has it; of each island what `advance` returns of it (islands, 4); of
+    each guest the impulse of the contacts with it (rows of all islands, 6), N s, N m s.
+    """
     alone(m, dt)
     rate_springs(m, touch, dt)
     islands = islands_of(m, touch, number)
-    touching, most, lost, work, driven = 0, 1, 0.0, 0.0, driven_now(m)
-    for k in range(len(islands.first)):
-        rows, own = islands.rows[islands.first[k] : islands.last[k]], islands.own[k] - islands.first[k]
-        which = islands.pairs[islands.first_pair[k] : islands.first_pair[k + 1]]
-        set_back(m, driven)
-        count, steps, heat, by_driven = _advance(m, touch, (rows, own, which), dt, reach, steps_per_contact)
-        touching, most, lost, work = touching + count, max(most, steps), lost + heat, work + by_driven
+    return islands, (driven_now(m), np.zeros((len(islands.first), 4)), np.zeros((len(islands.rows), 6)))
+
+
+@kernel
+def advance_islands(m, touch, islands, some, of, notes):
+    """Move the islands `some`, numbers; of: the step, s, the reach, m, and steps_per_contact."""
+    for k in some:
+        island = enter(m, islands, k, notes)
+        touching, steps, lost, work = _advance(m, touch, island, of[0], of[1], of[2])
+        leave(m, islands, k, (touching, steps, lost, work), notes)
+
+
+@kernel
+def enter(m, islands, k, notes):
+    """Bring the guests of island `k` to where the step began; (rows, how many are its own, pairs)."""
+    set_back(m, notes[0])
+    _swap(m, islands, k, notes[2])
+    for b in islands.rows[islands.own[k] : islands.last[k]]:
+        m[b, LOAD : LOAD + 6] = 0.0
+    rows, which = islands.rows[islands.first[k] : islands.last[k]], islands.first_pair[k : k + 2]
+    return rows, islands.own[k] - islands.first[k], islands.pairs[which[0] : which[1]]
+
+
+@kernel
+def leave(m, islands, k, found, notes):
+    """Note what an island has given to its guests, and what was `found` of it: see `isolate`."""
+    _swap(m, islands, k, notes[2])
+    touching, steps, lost, work = found
+    told = notes[1]
+    told[k, 0], told[k, 1], told[k, 2], told[k, 3] = touching, steps, lost, work
+
+
+@kernel
+def _swap(m, islands, k, given):
+    """Exchange the impulses of the guests of island `k` with those noted: sums then do not hang on who adds first."""
+    for j in range(islands.own[k], islands.last[k]):
+        for i in range(6):
+            at = islands.rows[j], TOTAL + i
+            m[at], given[j, i] = given[j, i], m[at]
+
+
+@kernel
+def conclude(m, islands, dt, notes):
+    """Move what is driven over the step, and add up, in the order of the islands, what `advance` returns."""
+    driven, told, given = notes
+    touching, most, lost, work = 0, 1, 0.0, 0.0
     set_back(m, driven)
     drift_driven(m, dt)
+    for k in range(len(told)):
+        touching, most = touching + int(told[k, 0]), max(most, int(told[k, 1]))
+        lost, work = lost + told[k, 2], work + told[k, 3]
+        for j in range(islands.own[k], islands.last[k]):
+            for i in range(6):
+                m[islands.rows[j], TOTAL + i] += given[j, i]
     return touching, most, lost, work
 
 
 @kernel
 def _advance(m, touch, island, dt, reach, steps_per_contact):
     """Move one island over `dt`, s; what `advance` returns of it."""
-    (rows, _, which), tanks = island, touch.tanks
-    lost, steps, work = 0.0, 0, 0.0
-    for c in which:
-        lost += tanks[c, SHEAR]
+    rows, _, which = island
+    lost, steps, work = sheared(touch, which), 0, 0.0
     touching = press(m, touch, island, 0.0, 0.0)
-    longest, on_springs = _longest(m, touch, island, steps_per_contact, reach)
+    longest, on_springs = longest_step(m, touch, island, steps_per_contact, reach)
     if is_heap(m, touch, island):
         touching, steps, heat = advance_heap(m, touch, island, dt, longest, touching)
         return touching, steps, lost + heat, 0.0
     rest, pending, shear = dt, 0.0, 0.0
     while rest > 0.0:
-        count = max(math.ceil(rest / longest), 1)
-        span = rest / count
-        if touching == 0 and count > 1 and not on_springs:
-            span = min(max(span, free_time(m, touch, which, dt) - pending), rest)
+        span = span_of(m, touch, which, (dt, rest, pending, longest), touching > 0 or on_springs)
         drift_involved(m, rows, pending + 0.5 * span)
         touching = press(m, touch, island, pending + 0.5 * span, span)
         shear = restrain(m, touch, which, rows, span)
         heat, by_driven = kick_involved(m, rows, span)
         lost, work, steps = lost + heat, work + by_driven, steps + 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
-    drift_involved(m, rows, pending)
-    for c in which:
-        tanks[c, LAPSE] = pending
+    come_to_end(m, touch, island, pending)
     return touching, steps, lost - shear, work
 
 
 @kernel
-def _longest(m, touch, island, steps_per_contact, reach):
-    """(longest sub-step, s: the half period pi / sqrt(k A / m*) of a body on what it may touch, over the steps for it;
-    whether springs pull any).
+def span_of(m, touch, which, when, pressed):
+    """Length of the next sub-step, s; when: the step, what is left of it, what has been kicked and not yet drifted and
+    the longest sub-step, s; pressed: whether forces act, or may act at once, inside the island."""
+    dt, rest, pending, longest = when
+    count = max(math.ceil(rest / longest), 1)
+    span = rest / count
+    if count > 1 and not pressed:
+        span = min(max(span, free_time(m, touch, which, dt) - pending), rest)
+    return span
 
-    All elements listed count as if they touched; a body's pairs are summed by rows of the matrix of k/m* n n, whose
-    largest sum bounds its eigenvalues (Gershgorin) and with whole pairs those of chains. Pairs at rest on each other
-    need only be stable: they take _AT_REST steps.
-    """
-    (rows, own, which), at_rest = island, min(steps_per_contact, _AT_REST)
-    for b in rows:
-        m[b, RATE] = m[b, RATE + 1] = m[b, RATE + 2] = 0.0
-    rate_balls(m, touch, which, (steps_per_contact, at_rest))
+
+@kernel
+def come_to_end(m, touch, island, pending):
+    """Drift what is still to be drifted, `pending`, s, by which friction springs are then behind."""
+    rows, _, which = island
+    drift_involved(m, rows, pending)
     for c in which:
-        if touch.pairs[c, FEATURE] != BALLS:
-            _rate_pair(m, touch, c, (steps_per_contact, at_rest), reach)
-    largest, swing = 0.0, 0.0
-    for b in rows[:own]:
-        largest = max(largest, m[b, RATE], m[b, RATE + 1], m[b, RATE + 2])
-        swing = max(swing, m[b, SWING])
-    largest += swing * (STEPS * steps_per_contact) ** 2
-    return (math.pi / math.sqrt(largest) if largest > 0.0 else math.inf), swing > 0.0
+        touch.tanks[c, LAPSE] = pending
 
 
 @kernel
-def _rate_pair(m, touch, c, steps, reach):
-    """Add to the RATE of its bodies what pair `c` needs; `steps`: of what moves, and of what is at rest."""
-    pairs, shift = touch.pairs, touch.shift
-    a, b = pairs[c, A], pairs[c, B]
-    apart, x, y, z = normal_of(m, touch, c)
-    area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
-    if area > 0.0 and pairs[c, FEATURE] == FIELD:
-        x, y, z = normal_by_elements(touch.slots, pairs[c, FIRST], pairs[c, LAST], (x, y, z))
-    calm = _calm(m, touch, c, (x, y, z), area) if area > 0.0 else False
-    rigid = _rate(m, touch, c, (x, y, z), apart)
-    if b >= 0 and apart < 0.0 and pairs[c, FEATURE] < ROUND_A:
-        ramp = 4.0 * ramp_of(m, a, b)
-        share = overlap_share(m, touch.forms, (a, b), three(shift, c, 0), (x, y, z), ramp)
-        rigid *= min(share + reach / ramp, 1.0)
-    many = steps[1] if calm else steps[0]
-    add_rate(m, a, b, (x, y, z), rigid * (many * many))
-
-
-@kernel
-def _rate(m, touch, c, n, apart):
-    """Square of the largest angular frequency, 1/s2, of pair `c` if all its elements touch."""
-    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
-    a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    total, trace, largest = show(m, touch, c, n, apart), 0.0, 0.0
-    touch.tanks[c, SHARE] = 1.0
-    if total == 0.0:
-        return 0.0
-    for slot in range(first, last + 1):
-        if slots[slot, AREA] > 0.0:
-            each = compliance(m, a, b, three(slots, slot, POINT), by, n)
-            trace, largest = trace + slots[slot, AREA] * each, max(largest, each)
-    bounce = total * compliance(m, a, b, centre_of(slots, first, last), by, n)
-    rigid, held, _ = hardness(m, touch, c, total)
-    # three ways to move on a face that is as hard everywhere; else all of it may bear on one corner
-    rocking = trace / 3.0 if touch.law == FOUNDATION else total * largest
-    return rigid * (1.0 / held - 1.0) * max(bounce, rocking)
-
-
-@kernel
-def _calm(m, touch, c, n, area):
-    """Whether a touching pair lies at rest: what speed and unbalanced force can move it is small against its depth."""
-    pairs, shift, slots = touch.pairs, touch.shift, touch.slots
-    a, b, by, first, last = pairs[c, A], pairs[c, B], three(shift, c, 0), pairs[c, FIRST], pairs[c, LAST]
-    motion, volume, fastest = relative_motion(m, a, b, by), 0.0, 0.0
-    x, y, z = motion[0]
-    for slot in range(first, last + 1):
-        if slots[slot, DEPTH] > 0.0:
-            p = three(slots, slot, POINT)
-            v = velocity_at(motion, p[0] - x, p[1] - y, p[2] - z)
-            fastest = max(fastest, abs(v[0] * n[0] + v[1] * n[1] + v[2] * n[2]))
-            volume += slots[slot, AREA] * slots[slot, DEPTH]
-    centre = centre_of(slots, first, last)
-    rigid, held, _ = hardness(m, touch, c, area)
-    square = rigid * (1.0 / held - 1.0) * area * compliance(m, a, b, centre, by, n)
-    unbalanced = _acceleration(m, a, centre, (0.0, 0.0, 0.0), n)
-    if b >= 0:
-        unbalanced -= _acceleration(m, b, centre, by, n)
-    return fastest / math.sqrt(square) + abs(unbalanced) / square < CALM * volume / area
-
-
-@kernel
-def _acceleration(m, b, p, by, n):
-    """Acceleration along `n` of the point `p` of body `b` under its present loads, m/s2."""
-    centre = three(m, b, POSITION)
-    x, y, z = p[0] - centre[0] - by[0], p[1] - centre[1] - by[1], p[2] - centre[2] - by[2]
-    (ax, ay, az), (p, q, r) = answer(m, b, loads_on(m, b))
-    return n[0] * (ax + q * z - r * y) + n[1] * (ay + r * x - p * z) + n[2] * (az + p * y - q * x)
+def sheared(touch, which):
+    """Energy in the friction springs of these pairs, J."""
+    energy = 0.0
+    for c in which:
+        energy += touch.tanks[c, SHEAR]
+    return energy
 
 
 @kernel
