@@ -7,7 +7,7 @@ import pickle
 import sys
 from pathlib import Path
 
-from test_shares import HALVES, moved
+from test_shares import AMONG_RANKS, moved
 
 from parsim.domain.comm import Comm
 from parsim.domain.shares import Shares
@@ -17,7 +17,7 @@ def main(out, uneven, start=None):
     """Go some steps, and let the last rank write what bodies and contacts keep."""
     comm = Comm()
     kept = moved(
-        Shares(comm, 0.0, float(uneven)), start and pickle.loads(Path(start).read_bytes()), HALVES[bool(start)]
+        Shares(comm, 0.0, float(uneven)), start and pickle.loads(Path(start).read_bytes()), AMONG_RANKS[bool(start)]
     )
     if comm.rank == comm.size - 1:
         Path(out).write_bytes(pickle.dumps(kept[1]))

@@ -17,7 +17,7 @@ from parsim.solid.shapes import BoxShape, PrismShape, SphereShape
 
 PROGRAM = Path(__file__).with_name("shared_floes.py")
 PAIRS, ISLANDS, BOTH = 0.0, math.inf, 1.05  # how uneven parts may be: all pairs are shared out, none, some
-HALVES = 12, 12  # steps before and after a restart
+HALVES, AMONG_RANKS = (12, 12), (4, 3)  # steps before and after a restart; those of ranks, who wait for each other
 
 
 class Member:
@@ -99,11 +99,15 @@ def gone(count, uneven, start=None, steps=HALVES[0]):
     return out
 
 
+def halves(steps):
+    """The same of one that shares with nobody, before and after a restart."""
+    first = moved(None, None, steps[0])
+    return first, moved(None, first[1], steps[1])
+
+
 @pytest.fixture(scope="module")
 def alone():
-    """The same of one that shares with nobody, before and after a restart."""
-    first = moved(None, None, HALVES[0])
-    return first, moved(None, first[1], HALVES[1])
+    return halves(HALVES)
 
 
 def same(one, other):
@@ -133,13 +137,13 @@ def test_a_restart_with_others_keeps_the_bits(before, after, alone):
 
 
 @pytest.mark.parametrize(("before", "after"), [((2, PAIRS), (3, ISLANDS)), ((3, BOTH), (1, PAIRS))])
-def test_ranks_that_share_have_the_bits_of_one_rank(before, after, alone, mpirun, tmp_path):
+def test_ranks_that_share_have_the_bits_of_one_rank(before, after, mpirun, tmp_path):
     """In two pieces, on different ranks."""
     out = tmp_path / "first", tmp_path / "second"
     for (ranks, uneven), words in ((before, [out[0]]), (after, [out[1], out[0]])):
         done = mpirun(ranks, [PROGRAM, words[0], uneven, *words[1:]])
         assert done.returncode == 0, done.stdout + done.stderr
-    for path, (_, kept) in zip(out, alone, strict=True):
+    for path, (_, kept) in zip(out, halves(AMONG_RANKS), strict=True):
         told = pickle.loads(path.read_bytes())
         assert all(same(one.values(), other.values()) for one, other in zip(told, kept, strict=True))
 
