@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from parsim.domain.comm import Comm
 
-_LEAST = 3e-4  # s; a message takes 0.02 to 0.1 ms
+_LEAST = 5e-4  # s, a message takes 0.02 to 0.1 ms
 _UNEVEN = 1.03
 
 
