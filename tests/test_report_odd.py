@@ -133,6 +133,7 @@ def test_the_ruler_tells_its_marks_apart(folder, length, told):
 
 
 @pytest.mark.skipif(importlib.util.find_spec("pyvista") is None, reason="without pyvista there is nothing to see")
+@pytest.mark.long
 def test_vtk_sees_a_tank_wherever_it_stands(folder):
     views, shift = {(1, name): pictures.Quality(200, 1) for name in scene.VIEWS}, np.array([0.0, -50.0, 65.0])
     here = pictures._by_vtk(parsim.open(folder), views)

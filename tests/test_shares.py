@@ -136,7 +136,11 @@ def test_a_restart_with_others_keeps_the_bits(before, after, alone):
     assert all(same(alone[1][0], one) for one, _ in gone(*after, start, HALVES[1]))
 
 
-@pytest.mark.parametrize(("before", "after"), [((2, PAIRS), (3, ISLANDS)), ((3, BOTH), (1, PAIRS))])
+@pytest.mark.parametrize(("before", "after"), [
+    ((2, BOTH), (1, PAIRS)),
+    pytest.param((2, PAIRS), (3, ISLANDS), marks=pytest.mark.long),
+    pytest.param((3, BOTH), (1, PAIRS), marks=pytest.mark.long),
+])  # fmt: skip
 def test_ranks_that_share_have_the_bits_of_one_rank(before, after, mpirun, tmp_path):
     """In two pieces, on different ranks."""
     out = tmp_path / "first", tmp_path / "second"
