@@ -11,6 +11,7 @@ from test_validate import told
 
 from parsim.case.places import Place, overlap, rotation
 from parsim.geometry.rotation import from_angles, matrices
+from parsim.particles.state import INTERNAL
 from parsim.solid.bodies import Bodies
 from parsim.solid.shapes import BoxShape
 
@@ -165,15 +166,18 @@ def on_decks(s, level):
 
 
 def levels(s):
-    """Height (bodies,) to which the water around each body would rise in a pipe, m."""
+    """Height (bodies,) to which the water around each body would rise in a pipe, m; 0 where there is none.
+
+    Of all that is no drop and not at the surface, whatever its pressure: sound in the tank takes its turns.
+    """
     p, at = s.domain.particles, s.near.fluid
-    at = at[p.p[at] > DENSITY * GRAVITY * s.case.spacing]  # not drops
+    at = at[p.surface[at] == INTERNAL]
     place, heads = np.stack([p.x[at], p.y[at], p.z[at]], 1), p.z[at] + p.p[at] / (DENSITY * GRAVITY)
-    near = s.bodies.radius + 4.0 * s.case.spacing
-    return np.array([
-        heads[np.linalg.norm(place - centre, axis=1) < reach].mean()
-        for centre, reach in zip(s.bodies.position, near, strict=True)
-    ])  # fmt: skip
+    reach = s.bodies.radius + 4.0 * s.case.spacing
+    around = (
+        heads[np.linalg.norm(place - centre, axis=1) < r] for centre, r in zip(s.bodies.position, reach, strict=True)
+    )
+    return np.array([each.mean() if each.size else 0.0 for each in around])
 
 
 def come_to_rest(case, until=2.0):
