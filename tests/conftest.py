@@ -15,6 +15,7 @@ from parsim.run import warm
 
 PATIENCE = 120  # s for one job
 MANY = 1000  # tests, about all of them
+LONGEST = "test_uncompiled.py", "test_faults.py", "test_same_bits.py", "test_sphale_runs.py", "test_launch.py"
 
 
 def pytest_configure(config):
@@ -23,8 +24,8 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(items):
-    """The longest file first, or one of two workers waits for it at the end."""
-    items.sort(key=lambda item: item.path.name != "test_uncompiled.py")
+    """The longest files first, or one of two workers waits for them at the end."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 def pytest_collection_finish(session):

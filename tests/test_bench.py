@@ -60,7 +60,7 @@ def test_the_cases_are_valid(case):
     assert parse(case).dimensions == 3
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_a_measurement_counts_what_it_ran(ranks):
     found = account.measured(SMALL | {"record": True}, ranks)
     assert found["fluid"] == 1000 and found["steps"] == 3 and found["work"] == 3 * found["active"]

@@ -219,6 +219,7 @@ def test_new_writes_a_case_that_passes_check_and_never_overwrites(tmp_path, caps
     assert [path.name for path in tmp_path.iterdir()] == ["river.toml"]
 
 
+@pytest.mark.long
 def test_an_example_is_found_by_name_anywhere_and_can_be_had_as_one_file(tmp_path, capsys, monkeypatch):
     """From an installed package, where no checkout is around."""
     shutil.copytree(ROOT / "cases", tmp_path / "site" / "parsim" / "cases")

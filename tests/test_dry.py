@@ -82,6 +82,7 @@ def test_a_body_passes_a_periodic_side():
     assert s.bodies.position[0, 0] > 1.0 and s.bodies.velocity[0, 0] < 2.0, "and rubs on the floor beyond"
 
 
+@pytest.mark.long
 def test_the_same_bits_on_two_ranks_and_after_a_restart(tmp_path, mpirun, capsys):
     case = tmp_path / "slope.toml"
     case.write_text(SLOPE + BODIES)

@@ -142,7 +142,7 @@ def disturbed(tmp_path, started):
     pytest.param("stops", 0, "rank 0 of 3 has made no progress for 20 s", marks=pytest.mark.slow),
     pytest.param("waits", 1, "has waited 60 s for a message", marks=pytest.mark.slow),
     ("raises", 1, "broken on purpose"),
-    ("dies", 2, "rank 2"),
+    pytest.param("dies", 2, "rank 2", marks=pytest.mark.long),
 ])  # fmt: skip
 def test_one_bad_rank_ends_the_job(disturbed, how, rank, said):
     job, out = disturbed(how, rank)
@@ -158,7 +158,7 @@ def test_one_bad_rank_ends_the_job(disturbed, how, rank, said):
 
 @pytest.mark.parametrize(("how", "rank", "fault", "named"), [
     ("nan", 1, "faster than the speed of sound", "particle "),
-    ("flies", -1, "the time step has come down", "body right"),
+    pytest.param("flies", -1, "the time step has come down", "body right", marks=pytest.mark.long),
 ])  # fmt: skip
 def test_a_run_gone_wrong_names_the_place(disturbed, how, rank, fault, named):
     job, out = disturbed(how, rank)
@@ -176,7 +176,7 @@ def test_a_killed_parsim_takes_its_ranks_along(tmp_path, started):
     assert job.end() == -jobs.KILL and gone(job)
 
 
-@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.slow), 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.long)])
 def test_a_closed_terminal_stops_the_run_in_good_order(tmp_path, ranks):
     out, (ours, theirs) = tmp_path / "out", pty.openpty()
     line = [sys.executable, "-m", "parsim", "run", CASE, "-o", out, "-n", str(ranks)]
@@ -200,6 +200,7 @@ def test_a_closed_terminal_stops_the_run_in_good_order(tmp_path, ranks):
     assert status(out) == "stopped" and checkpoint.newest(out)[0].account["time"] > 0.05
 
 
+@pytest.mark.long
 def test_a_second_signal_ends_at_once(disturbed):
     job, out = disturbed("sleeps", 0, "--set", "run.patience=1000.0")
     job.until(lambda: time_of(out) >= 0.0)

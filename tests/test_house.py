@@ -227,6 +227,7 @@ def test_public_things_have_type_hints(path):
     assert list(unhinted(tree(path))) == []
 
 
+@pytest.mark.long
 def test_the_type_hints_are_right(tmp_path):
     words = [sys.executable, "-m", "mypy", "--cache-dir", tmp_path]
     ran = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)

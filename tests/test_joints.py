@@ -66,6 +66,7 @@ def swing(steps, until, angle=2.5, rod=0.2):
     return body, np.linalg.norm(body.position[0] - pivot), budget(body, contacts) - before
 
 
+@pytest.mark.long
 def test_a_pendulum_swings_with_the_exact_period():
     """Elliptic integral by the arithmetic-geometric mean; order two in the step; rod and energy kept."""
     rod, a, b = 0.2, 1.0, math.cos(1.25)  # let go at 2.5 rad
@@ -222,6 +223,7 @@ def test_rails_hold_what_the_water_lifts(tmp_path):
     assert s.bodies.position[0, 2] == 0.1
 
 
+@pytest.mark.long
 def test_a_given_motion_moves_the_water(tmp_path):
     """A plate that sways gives the water energy, and the account of all energy stays closed."""
     sway = 'kind = "sway"\nbody = "plate"\namplitude = [0.01, 0.0, 0.0]\nfrequency = 2.0\nbegins = 0.0\n'

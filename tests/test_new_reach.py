@@ -77,6 +77,7 @@ def test_a_raster_is_cut_to_where_it_is_wet(tmp_path, capsys, monkeypatch):
     assert case.speed == pytest.approx(2 * (9.81 * 0.1) ** 0.5, abs=1e-3)
 
 
+@pytest.mark.long
 def test_a_file_in_feet_is_a_box_in_metres(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     reach(tmp_path)

@@ -11,6 +11,7 @@ CASE = Path(__file__).with_name("same_bits_simps.toml")
 WHOLE, PART = "0.02", "0.012"
 
 
+@pytest.mark.long
 def test_same_bits(mpirun, tmp_path, capsys):
     for ranks, out, until in ((1, "one", WHOLE), (3, "three", WHOLE), (2, "pieces", PART)):
         done = mpirun(ranks, ["run", CASE, "-o", tmp_path / out, "--until", until], timeout=240)

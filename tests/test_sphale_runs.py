@@ -97,6 +97,7 @@ def test_the_case_does_what_the_comparison_needs(one_rank):
     assert max(counts["lost"]) == 0
 
 
+@pytest.mark.long
 def test_same_bits_on_three_ranks(one_rank, mpirun, tmp_path, capsys):
     assert mpirun(3, ["run", BITS, "-o", tmp_path / "other"], timeout=240).returncode == 0
     assert main(["compare", str(one_rank), str(tmp_path / "other")]) == 0, capsys.readouterr().out

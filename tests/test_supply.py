@@ -125,6 +125,7 @@ def test_a_supply_by_discharge_begins_and_ends():
     assert queue.amounts[0] == pytest.approx(s.bodies.volume[0])
 
 
+@pytest.mark.long
 def test_a_blocked_supply_waits_and_says_how_long():
     s = simulation(reach(bodies=[block(0.06)]))
     b = s.bodies

@@ -229,6 +229,7 @@ def reaction(p, near, weight, forces, acceleration, pressure):
         p.kinematics,
         Vectors(*acceleration),
         tables.Pressures(pressure, p.scale, isotropy(p)),
+        p.surface,
         weight,
         forces,
         out,

@@ -13,6 +13,7 @@ from parsim.commands.trial import told, tried
 SMALL = ["cases/still_water/2d.toml", "--set", "spacing=0.02", "--set", "run.settle=0.0"]
 
 
+@pytest.mark.long
 def test_a_case_is_run_for_a_while_and_the_rest_told_by_that(capsys, tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     assert main(["check", *SMALL, "--until", "2000.0", "--trial", "1"]) == 0

@@ -80,6 +80,7 @@ def test_only_what_is_clearly_faster_is_chosen(seconds, best, monkeypatch):
     assert probe.fastest() == best
 
 
+@pytest.mark.long
 def test_every_possible_variant_can_be_timed():
     found = probe.measured(variant.possible())
     assert list(found) == variant.possible() and min(found.values()) > 0

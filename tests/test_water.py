@@ -57,7 +57,7 @@ def bottom(s):
     return (p.p[low] / (9810.0 * (0.1 - p.z[low]))).mean()
 
 
-@pytest.mark.parametrize("rows", [3, 5, 7])
+@pytest.mark.parametrize("rows", [3, *(pytest.param(rows, marks=pytest.mark.long) for rows in (5, 7))])
 def test_thin_water_at_rest_keeps_its_level(rows):
     level = 0.01 * rows
     s = simulation(TANK | {"water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.2, 1.0, level]}]}})

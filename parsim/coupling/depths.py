@@ -46,7 +46,7 @@ class Columns:
         column, found = i * d.ny + j, np.full((3, len(d.bottom)), -math.inf)
         water = np.zeros(len(p), bool)
         water[flow.near.fluid] = True
-        water = water[own] & (p.surface[own] != DETACHED)
+        water = water[own] & (p.surface[own] < DETACHED)
         inside = (p.x[own] >= d.x) & (p.x[own] < self._end)  # not what is yet to come in, or goes out
         solid = (kind == BODY) & (p.image[own] == 0) & inside
         ground = solid & self._ground[np.where(solid, body, 0)] if len(self._ground) else solid

@@ -19,7 +19,7 @@ from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.nearby import near_bodies
 from parsim.geometry.rotation import matrices, to_global
 from parsim.machine.jit import kernel
-from parsim.particles.state import BODY
+from parsim.particles.state import BODY, SHUT_IN
 
 _NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
 _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
@@ -42,9 +42,10 @@ class Patches(NamedTuple):
 
 
 class Water(NamedTuple):
-    """Pressure (particles,), Pa; slope of the hydrostatic head (3,), Pa/m; spacing, m; sums of full layers."""
+    """Pressure, Pa, and class of the particles; slope of the hydrostatic head (3,), Pa/m; spacing, m; full layers."""
 
     pressure: np.ndarray
+    surface: np.ndarray
     head: np.ndarray
     spacing: float
     layer: float
@@ -106,7 +107,7 @@ class Films:
         though open and below the water line, in patches; and the sum of the heads along wet rims, Pa, and their number.
         gravity (3,), m/s2: what pulls in this step.
         """
-        p, here, b = domain.particles, self._here, self.bodies
+        p, here = domain.particles, self._here
         found = Found(*np.zeros((4, here.size, 6)))
         patches = Patches(
             self.sample,
@@ -120,16 +121,19 @@ class Films:
             self._patch,
             self.samples.body,
         )
-        turn = matrices(quaternion).reshape(-1, 9)
-        bodies = Bodies(position, turn, b.forms, self._first, self._others, self._period)
         # water that goes round has no head along its way
         head = np.where(np.isinf(self._period), self._density * np.array(gravity), 0.0)
-        water = Water(p.p, head, self._spacing, self._layer, self._deep)
-        solids = bodies, self._planes, plate
-        points = p.place, self.samples.shift
-        patch_loads(here, patches, near.lists, points, solids, (water, self._weight), b.film, found)
+        water = Water(p.p, p.surface, head, self._spacing, self._layer, self._deep)
+        points, solids = (p.place, self.samples.shift), self.around(plate, position, quaternion)
+        patch_loads(here, patches, near.lists, points, solids, (water, self._weight), self.bodies.film, found)
         body = self.samples.body[self.sample[here]].astype(np.int64)
-        return np.concatenate(found), np.concatenate([body + k * len(b) for k in range(4)])
+        return np.concatenate(found), np.concatenate([body + k * len(self.bodies) for k in range(4)])
+
+    def around(self, plate, position, quaternion):
+        """All that a gap may end at, with the bodies at a pose: see `gap_ahead`; `plate` is the gate's outline (4,)."""
+        turn = matrices(quaternion).reshape(-1, 9)
+        bodies = Bodies(position, turn, self.bodies.forms, self._first, self._others, self._period)
+        return bodies, self._planes, plate
 
     def keep(self, wet, dry, heads):
         """Note the sums over all ranks, (bodies, 6) each, for the next step."""
@@ -148,8 +152,10 @@ def _layers(lattice):
 
 
 @kernel
-def water_at(i, x, n, lists, place, weight):
+def water_at(i, x, n, lists, place, surface, weight):
     """Sums of sample i: W over all the water it sees; W d / r2 over that before its face, at x with normal n, d ahead.
+
+    Without what is shut in, which pushes nothing.
 
     The second is what the water pushes with: one layer does about 85 % of what deep water does, the film the rest.
     """
@@ -158,6 +164,8 @@ def water_at(i, x, n, lists, place, weight):
     every, ahead = 0.0, 0.0
     for c in range(start[i], middle[i]):
         j = index[c]
+        if surface[j] == SHUT_IN:
+            continue
         dx, dy, dz = px[j] - px[i], py[j] - py[i], pz[j] - pz[i]
         r2 = dx * dx + dy * dy + dz * dz
         wt, slope, _ = weight_at(weight, r2, 1.0 / math.sqrt(r2))
@@ -177,7 +185,7 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
     sample, face, on_rim, lone, place, normal, area, row, patch, body = patches
     (px, py, pz), shift = points
     centre, turn = solids[0].centre, solids[0].turn
-    (pressure, head, spacing, layer, deep), weight = water
+    (pressure, surface, head, spacing, layer, deep), weight = water
     load, wet, dry, heads = found
     for k in range(here.size):
         m = here[k]
@@ -190,7 +198,7 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
         every, before = 0.0, 0.0
         if i >= 0:
             there = (x[0] + shift[i, 0], x[1] + shift[i, 1], x[2] + shift[i, 2])
-            every, before = water_at(i, there, n, lists, points[0], weight)
+            every, before = water_at(i, there, n, lists, points[0], surface, weight)
             before *= spacing / deep
         value = film[b, 0] + head[0] * x[0] + head[1] * x[1] + head[2] * x[2]
         if on_rim[m]:

@@ -63,7 +63,7 @@ class Openings:
             away = self.outlet.x - p.x[own]
             looks += [(_OUTSIDE, away, _OUTLET, self._depth), (_BEFORE, away, _EDGE, self._spacing)]
         for row, away, (near, far), unit in looks:
-            at = own[(away > near * unit) & (away < far * unit) & (p.surface[own] != DETACHED)]
+            at = own[(away > near * unit) & (away < far * unit) & (p.surface[own] < DETACHED)]
             values.append(np.stack([p.z[at] + p.p[at] / self._head, p.u[at], np.ones(at.size)], axis=1))
             rows.append(np.full(at.size, row))
         if self.outlet:

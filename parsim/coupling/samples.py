@@ -1,7 +1,6 @@
 """Water on bodies, bodies on water: the samples that a body shows to the water, and the loads they bring back."""
 
 import functools
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,14 +8,11 @@ import numpy as np
 from parsim.coupling.mobility import Mobility
 from parsim.coupling.response import added_inertia, arms_of, levers, respond
 from parsim.geometry.faces import period
-from parsim.geometry.rotation import matrices, to_body, to_global
+from parsim.geometry.rotation import matrices
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, Particles, make_id
 from parsim.particles.tables import Vectors
 from parsim.solid.acceleration import Given, accelerate_bodies, mobilities
-from parsim.solid.shapes.kernels import distance
-
-_WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
 
 
 class Motion(NamedTuple):
@@ -42,7 +38,6 @@ class BodySamples:
 
     def __init__(self, case, bodies, layers, units):
         self.bodies = bodies
-        self._way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
         self._units, self._low, self._period = units, np.array(case.box.min), period(case)
         sampled = functools.cache(lambda shape: shape.samples(case.spacing, case.spacing * layers, bodies.planar))
         self.of_body = [sampled(shape) for shape in bodies.shapes]
@@ -97,10 +92,11 @@ class BodySamples:
 
         Velocity and acceleration are those of the rigid motion; returns nothing.
         """
-        motion = self._motion(position, quaternion)
+        motion = self.motion(position, quaternion)
         place_samples(p.kind, (p.body, p.sample), self.offsets, self.shift, motion, p.kinematics, p.acceleration)
 
-    def _motion(self, position, quaternion):
+    def motion(self, position, quaternion):
+        """`Motion` of the bodies at a pose."""
         b = self.bodies
         return Motion(position, matrices(quaternion), b.velocity, b.spin, b.acceleration, b.angular_acceleration)
 
@@ -145,29 +141,15 @@ class BodySamples:
         self.place(p, *pose)
         return load
 
-    def mobility(self, domain, near, pose, added, faces, step):
+    def mobility(self, domain, near, beside, pose, added, faces, step):
         """How the bodies answer to pressures of the water: a `Mobility`. The rest: see `answer`, `Solids.loosen`."""
         inverse = np.empty((len(self.bodies), 6, 6))
         mobilities(added, self._given(pose, step), inverse)
-        return Mobility(domain, near, self._beside, self, pose[0], inverse, faces, self._units[0])
+        return Mobility(domain, near, beside, self, pose[0], inverse, faces, self._units[0])
 
     def _given(self, pose, step):
         b = self.bodies
         return Given(b.mass, b.inertia, pose[1], b.contact_load + b.spring_load, b.spin, *b.constraints(*step))
-
-    def find(self, domain, near):
-        """Note, after a rebuild, which of this rank's water may meet a body."""
-        self._beside = near.fluid[domain.near(BODY, "kind")[near.fluid]]
-
-    def keep_out(self, p, near, position, quaternion):
-        """Turn the velocity of water that is inside a body at the given pose, so that it comes out again.
-
-        Water one layer thick has no pressure, so it can sink into what it lies on. The impulse is not given back: these
-        are single particles.
-        """
-        motion = self._motion(position, quaternion)
-        of_samples = p.body, self.shift
-        expel(self._beside, near.lists, of_samples, motion, self.bodies.forms, self._way_out, p.kinematics)
 
 
 @kernel
@@ -211,42 +193,3 @@ def place_samples(kind, which, offsets, shift, motion, kinematics, out):
         ax[i] = acceleration[b, 0] + (f * dz - g * dy) + (q * dw - r * dv)
         ay[i] = acceleration[b, 1] + (g * dx - e * dz) + (r * du - p * dw)
         az[i] = acceleration[b, 2] + (e * dy - f * dx) + (p * dv - q * du)
-
-
-@kernel
-def expel(at, lists, of_samples, motion, forms, way_out, kinematics):
-    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in `way_out` s.
-
-    `of_samples`: body and shift of each particle.
-    """
-    body, shift = of_samples
-    _, middle, end, index = lists
-    position, turn, velocity, spin, _, _ = motion
-    x, y, z = kinematics.place
-    u, v, w = kinematics.velocity
-    for i in at:
-        last = -1
-        for s in range(middle[i], end[i]):
-            j = index[s]
-            b = body[j]
-            if b < 0 or b == last:
-                continue
-            last = b
-            dx, dy = x[i] - shift[j, 0] - position[b, 0], y[i] - shift[j, 1] - position[b, 1]
-            dz = z[i] - shift[j, 2] - position[b, 2]
-            t = turn[b].ravel()
-            high, n = distance(forms, b, to_body(t, dx, dy, dz))
-            depth = -high
-            if depth <= 0.0:
-                continue
-            nx, ny, nz = to_global(t, n[0], n[1], n[2])
-            p, q, r = spin[b]
-            away = (
-                (u[i] - velocity[b, 0] - (q * dz - r * dy)) * nx
-                + (v[i] - velocity[b, 1] - (r * dx - p * dz)) * ny
-                + (w[i] - velocity[b, 2] - (p * dy - q * dx)) * nz
-            )
-            more = max(depth / way_out - away, 0.0)
-            u[i] += more * nx
-            v[i] += more * ny
-            w[i] += more * nz

@@ -16,6 +16,7 @@ from parsim.coupling.openings import Openings
 from parsim.coupling.pull import Pull
 from parsim.coupling.samples import BodySamples
 from parsim.coupling.sides import Faces, wet
+from parsim.coupling.stray import Stray
 from parsim.fluid.friction import slip_of
 from parsim.solid.bodies import from_case
 from parsim.solid.contacts import Contacts
@@ -34,6 +35,7 @@ class Solids:
         self.samples = BodySamples(case, self.bodies, layers, _units(case, self._scales, self.bodies))
         self.samples.seen = ~buried(self.bodies, self.samples)
         self.films = Films(case, self.bodies, self.samples, lattice)
+        self.stray = Stray(case, self.samples)
         self._lattice = lattice
         self.walls = Walls(case, layers)
         self.gate = Gate(case) if case.gate is not None else None
@@ -77,7 +79,7 @@ class Solids:
         self.samples.note_shifts(flow.particles)
         self.openings.find(flow.particles, flow.domain.own)
         if self.pushed():
-            self.samples.find(flow.domain, flow.near)
+            self.stray.find(flow.domain, flow.near)
             self.films.find(flow.domain)
         if self.friction:
             self.friction.find(flow.particles, flow.near)
@@ -156,7 +158,7 @@ class Solids:
         pose, load, _, inertia = self._found(flow, reaction, time, dt)
         step = (time, dt)
         self.samples.answer(flow.particles, flow.near, pose, load, inertia, reaction[1], step, flow.gravity)
-        return self.samples.mobility(flow.domain, flow.near, pose, inertia, faces, step) or None
+        return self.samples.mobility(flow.domain, flow.near, self.stray.beside, pose, inertia, faces, step) or None
 
     def give_way(self, flow, change, dt):
         """Change the accelerations of the bodies, and of their samples, by `change` (bodies, 6), m/s2 and 1/s2."""
@@ -168,11 +170,13 @@ class Solids:
         """Pose at the middle of the step, loads, films, inertia that the water adds: see `BodySamples.loads`."""
         domain, near, pose = flow.domain, flow.near, self.bodies.drifted(0.5 * dt)
         force, _, response = reaction
-        plate = self.gate.outline(time + 0.5 * dt) if self.gate else np.zeros(4)
-        added = self.films.loads(domain, near, plate, *pose, flow.gravity)
+        added = self.films.loads(domain, near, self._plate(time + 0.5 * dt), *pose, flow.gravity)
         load, rims, inertia = self.samples.loads(domain, near, force, response, pose[0], *added)
         load += self._turn(flow, dt)
         return pose, load, rims, inertia
+
+    def _plate(self, time):
+        return self.gate.outline(time) if self.gate else np.zeros(4)
 
     def driven(self, time):
         """Whether the gate moves at `time`, s."""
@@ -187,8 +191,9 @@ class Solids:
         """Move the bodies over `dt`, s, under what has pushed them, and place the samples there."""
         if len(self.bodies):
             if self._wet:
+                pose = self.bodies.drifted(0.5 * dt)
                 with self.timers("move"):
-                    self.samples.keep_out(flow.particles, flow.near, *self.bodies.drifted(0.5 * dt))
+                    self.stray.turn_out(flow, pose, self.films.around(self._plate(time + 0.5 * dt), *pose))
             with self.timers("contacts"):
                 self.contacts.step(self.bodies, self._load if self._wet else self._turn(flow, dt), time, dt)
                 if flow.turning:
@@ -199,6 +204,11 @@ class Solids:
         with self.timers("bodies"):
             self._place(flow.particles, self.bodies.position, self.bodies.quaternion, time + dt)
             self.openings.advance(flow.particles, dt)
+
+    def lead_out(self, p, dt):
+        """Move water that is shut in beside bodies along its gap: see `Stray`. Last in a step of dt, s."""
+        if self.pushed():
+            self.stray.lead_out(p, dt)
 
     def _turn(self, flow, dt):
         """Find what bodies feel of a box that turns besides gravity, (bodies, 6), N and N m, in a step of dt, s."""

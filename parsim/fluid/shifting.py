@@ -23,15 +23,15 @@ def shift(at, surface, normal, shifting, shifts, n):
     """What pushes particles apart, in `shifts`, becomes their shift, m (Mellado 2021, eqs 5.31, 5.36-5.37).
 
     It is -factor times the sums, at most `longest`, and never outward through the surface: surface particles move along
-    it, those that see one not toward it; detached ones stay. A shifted particle takes the hydrostatic density of its
-    new place.
+    it, those that see one not toward it; detached and shut in ones stay. A shifted particle takes the hydrostatic
+    density of its new place.
     """
     nx, ny, nz = normal.x, normal.y, normal.z
     ax, ay, az = shifts.x, shifts.y, shifts.z
     factor, longest, hx, hy, hz, slope = shifting
     for row in prange(at.size):
         i = at[row]
-        if surface[i] == DETACHED:
+        if surface[i] >= DETACHED:
             ax[i] = ay[i] = az[i] = 0.0
             continue
         mx, my, mz = nx[i], ny[i], nz[i]

@@ -38,7 +38,7 @@ class Front:
 def wet_columns(at, surface, x, low, width, filled, farthest):
     """Mark the columns of `width`, m, that hold connected water, and its largest x in each."""
     for i in at:
-        if surface[i] != DETACHED:
+        if surface[i] < DETACHED:
             k = min(max(int((x[i] - low) / width), 0), filled.size - 1)
             filled[k] = 1.0
             farthest[k] = max(farthest[k], x[i])

@@ -50,7 +50,7 @@ def levels(at, surface, place, gauges, reach, flat, out):
     x, y, z = place
     for k in range(gauges.shape[0]):
         for i in at:
-            if surface[i] != DETACHED:
+            if surface[i] < DETACHED:
                 dx, dy = x[i] - gauges[k, 0], y[i] - gauges[k, 1]
                 if dx * dx + (0.0 if flat else dy * dy) < reach * reach:
                     out[k] = max(out[k], z[i])

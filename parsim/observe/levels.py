@@ -41,7 +41,7 @@ class Levels:
             return []
         p, count = s.domain.particles, len(self._names)
         top, values, index = np.full(count, -np.inf), [np.zeros((0, 2))], [np.zeros(0, np.int64)]
-        wet = s.near.fluid[p.surface[s.near.fluid] != DETACHED]
+        wet = s.near.fluid[p.surface[s.near.fluid] < DETACHED]
         wet = wet[np.argsort(p.x[wet], kind="stable")]
         along = p.x[wet]
         for k, (x, y) in enumerate(self._places):

@@ -120,7 +120,7 @@ def pressures(at, place, water, probes, seen, head, out):
             dx, dy = nearest(probes[k, 0] - x[i], period[0]), nearest(probes[k, 1] - y[i], period[1])
             dz = nearest(probes[k, 2] - z[i], period[2])
             r2 = max(dx * dx + dy * dy + dz * dz, 1e-12 * radius * radius)
-            if surface[i] == DETACHED or r2 >= radius * radius:
+            if surface[i] >= DETACHED or r2 >= radius * radius:
                 continue
             if count < len(out):
                 _, _, measure = weight_at(weight, r2, 1.0 / math.sqrt(r2))

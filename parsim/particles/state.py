@@ -10,7 +10,7 @@ import numpy as np
 from parsim.particles.tables import Kinematics, Vectors
 
 FLUID, BODY, GATE_UP, GATE_DOWN, WALL, INLET = 0, 1, 2, 3, 4, 5
-INTERNAL, VICINITY, SURFACE, DETACHED = 0, 1, 2, 3
+INTERNAL, VICINITY, SURFACE, DETACHED, SHUT_IN = 0, 1, 2, 3, 4  # the last two push nothing
 POSITION = ("x", "y", "z")
 VELOCITY = ("u", "v", "w")
 ACCELERATION = ("ax", "ay", "az")
@@ -38,7 +38,7 @@ COMMON = (  # fields of every scheme
     Field("u", "f8", "m/s", True, "velocity downstream"),
     Field("v", "f8", "m/s", True, "velocity across"),
     Field("w", "f8", "m/s", True, "velocity up"),
-    Field("surface", "u1", "-", True, "internal, vicinity of the surface, surface, detached"),
+    Field("surface", "u1", "-", True, "internal, vicinity of the surface, surface, detached, shut in between solids"),
     Field("scale", "f8", "-", True, "volume of the sample over spacing^d"),
     Field("image", "u1", "-", True, "1 for the periodic image of another particle"),
     Field("p", "f8", "Pa", False, "pressure"),

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from parsim.river.columns import Columns
 
 CORE = 0.2, 0.8  # of the depth of a column, between which its level is found: near neither bed nor surface
-DETACHED = 3  # class of splash in frames
+DETACHED = 3  # class of splash in frames; that of water shut in is above
 WINDOW = 5.0  # times sqrt(H/g), over which levels are averaged
 
 
@@ -34,7 +34,7 @@ def water_of(frame: Mapping[str, np.ndarray], columns: Columns, spacing: float, 
     spacing: of particles, m; weight: of the water along z, N/m3. The level is the mean of z + p/weight in CORE of the
     depth: it holds under ice too, and is finer than a spacing. Splash is left out.
     """
-    kept = frame["class"] != DETACHED
+    kept = frame["class"] < DETACHED
     (x, y, z), u, p = frame["position"][kept].T, frame["velocity"][kept, 0], frame["pressure"][kept]
     number = columns.numbers(x, y)
     inside = number >= 0

@@ -99,6 +99,7 @@ class Simulation:
         keep = max(1.0 - self._damping * dt, 0.0) if self.time < 0.0 else 1.0
         self.solids.pull.steer(self.flow(), self.bodies, self.scheme.lattice.volume, self.time, dt)
         self.scheme.step(self.flow(keep), self.solids, self.time, dt)
+        self.solids.lead_out(self.domain.particles, dt)
         if self.time < 0.0 <= self.time + dt:
             flow(self.case, self.domain.particles)
         self.time += dt

@@ -182,7 +182,8 @@ class WCMPS:
         """
         forces, count = self._forces(dt), at.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
-        sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
+        given = at, near.lists, p.kinematics, p.acceleration, _pressures(p), p.surface, self.lattice.weight
+        sweeps.reaction(*given, forces, out)
         if rubbing:
             given = at, near.lists, p.kinematics, self._smooth.weight
             friction.drag_samples(*given, rubbing, self._rub, out.force)

@@ -12,6 +12,7 @@ import numpy as np
 
 from parsim.fluid.weights.choice import weight_at
 from parsim.machine.jit import kernel, prange, rows
+from parsim.particles.state import SHUT_IN
 
 LARGEST = 0.1  # correction of `isotropic`: what is less so is made isotropic by that much only
 _PART, _FULL = 0.97, 0.99  # share of n0 that water and bodies fill from which a particle is made isotropic, and fully
@@ -96,12 +97,12 @@ def momentum(at, lists, kinematics, pressures, weight, forces, acceleration, aro
 
 
 @rows
-def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out):
+def reaction(at, lists, kinematics, acceleration, pressures, surface, weight, forces, out):
     """Pair accelerations that body samples give back to the water they see, times -1: rows of out.force.
 
     They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `force` by
     -`response` da, a symmetric matrix that is never negative, by its elements xx, xy, xz, yy, yz, zz (samples, 6).
-    Which pairs collide is told by the velocities at the start of the step.
+    Which pairs collide is told by the velocities at the start of the step; water shut in by `surface` (n,) does not.
     """
     start, middle, index = lists.start, lists.middle, lists.index
     x, y, z = kinematics.place
@@ -128,7 +129,7 @@ def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out
             my += g * dy
             mz += g * dz
             f = -push * g * (pi + p[j])
-            if r2 < close2:
+            if r2 < close2 and surface[j] != SHUT_IN:
                 approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
                 if approach < 0.0:
                     approach -= dt * (ax[i] * dx + ay[i] * dy + az[i] * dz)

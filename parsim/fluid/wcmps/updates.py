@@ -8,10 +8,11 @@ from parsim.particles.state import DETACHED, FLUID
 def predict(kind, surface, velocity, rate, state, place, n, p):
     """Fluid `half` a step on, halo included: positions, number density, pressure.
 
-    State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero in a splash. At the
-    surface it comes out near zero by itself, for continuity lacks there what the pressure force lacks. Setting it to
-    zero, as Mellado does, makes it jump by c0^2 dn/n0, more than the weight of some rows, whenever a particle is
-    found at the surface or no longer: still water then boils at 0.1 m/s. `state`: half, s, n0, stiffness, Pa.
+    State p = stiffness ((n/n0)^7 - 1), stiffness = c0^2 rho0 / 7 (Mellado 2021, eq. 5.17); zero in a splash and
+    where it is shut in. At the surface it comes out near zero by itself, for continuity lacks there what the pressure
+    force lacks. Setting it to zero, as Mellado does, makes it jump by c0^2 dn/n0, more than the weight of some rows,
+    whenever a particle is found at the surface or no longer: still water then boils at 0.1 m/s. `state`: half, s, n0,
+    stiffness, Pa.
     """
     x, y, z = place.x, place.y, place.z
     u, v, w = velocity
@@ -24,7 +25,7 @@ def predict(kind, surface, velocity, rate, state, place, n, p):
             n[i] += half * n[i] * rate[i]
             s = n[i] / n0
             s2 = s * s
-            p[i] = 0.0 if surface[i] == DETACHED else stiffness * (s2 * s2 * s2 * s - 1.0)
+            p[i] = 0.0 if surface[i] >= DETACHED else stiffness * (s2 * s2 * s2 * s - 1.0)
 
 
 @each

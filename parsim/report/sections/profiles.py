@@ -61,7 +61,7 @@ def profile(
     """
     edges = np.linspace(low, high, max(2, round((high - low) / spacing) + 1))
     heights = np.full(len(edges) - 1, -np.inf)
-    counted = (water["class"] != DETACHED) & ~np.asarray(left_out)
+    counted = (water["class"] < DETACHED) & ~np.asarray(left_out)
     x, z = water["position"][counted, 0], water["position"][counted, 2]
     place = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(heights) - 1)
     np.maximum.at(heights, place, z + spacing / 2)

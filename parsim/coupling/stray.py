@@ -1,0 +1,142 @@
+"""Water where none can be: inside bodies, and in gaps too thin for a particle. It is brought out again.
+
+Water one layer thick has no pressure, so it can sink into what it lies on. And between two solids that close, the last
+layer is torn to drops that see no other water: nothing drives them out along the gap, and they carried what lies on
+them like balls, without friction and for ever, and rang like springs. What water does in such a gap is a matter of
+`films`; the drops in it push nothing and go the way in which the gap widens.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from parsim.coupling.gaps import gap_ahead
+from parsim.geometry.rotation import to_body, to_global
+from parsim.machine.jit import kernel
+from parsim.particles.state import BODY, SHUT_IN
+from parsim.solid.shapes.kernels import distance
+
+_WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
+_THIN = 0.7  # gap, in spacings, under which a layer has parted into drops
+
+
+class Ways(NamedTuple):
+    """spacing, m; time in which what is inside a body comes out, s; speed along a gap, m/s."""
+
+    spacing: float
+    way_out: float
+    along: float
+
+
+class Stray:
+    """Brings stray water of a case out; `beside`: the particles (n,) of this rank's water that may meet a body."""
+
+    def __init__(self, case, samples):
+        self.samples = samples
+        way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
+        # as fast along a gap as what falls half a spacing, for the pressure that drives it is unknown
+        self._ways = Ways(case.spacing, way_out, math.sqrt(math.hypot(*case.gravity) * case.spacing))
+
+    def find(self, domain, near):
+        """Note, after a rebuild, which of this rank's water may meet a body."""
+        self.beside = near.fluid[domain.near(BODY, "kind")[near.fluid]]
+        self._lead = np.zeros((self.beside.size, 3))
+
+    def turn_out(self, flow, pose, solids):
+        """Turn the velocity of water that is inside a body so that it comes out again; see what is shut in beside one.
+
+        pose: of the bodies; solids: see `gap_ahead`. The impulse is not given back: these are single particles.
+        """
+        p, samples = flow.particles, self.samples
+        of_samples, motion = (p.body, samples.shift), samples.motion(*pose)
+        turn_out(
+            self.beside, flow.near.lists, of_samples, motion, solids, self._ways, p.kinematics, p.surface, self._lead
+        )
+
+    def lead_out(self, p, dt):
+        """Move what is shut in along its gap for dt, s, once its places are those of the step: it gains no speed."""
+        for place, way in zip(p.place, self._lead.T, strict=True):
+            place[self.beside] += dt * way
+
+
+@kernel
+def gap_at(x, b, solids, turn, spacing):
+    """(depth of x (3,) in body `b`, negative outside; the gap there to the next solid, m; the way across it (3,))."""
+    bodies = solids[0]
+    centre = bodies.centre[b]
+    high, n = distance(bodies.forms, b, to_body(turn, x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]))
+    n = to_global(turn, n[0], n[1], n[2])
+    gap = high + gap_ahead(x, n, b, solids, spacing) if high < 0.5 * spacing else np.inf
+    return -high, gap, n
+
+
+@kernel
+def way_along(x, n, b, solids, turn, spacing):
+    """Unit vector (3,) along the gap at x (3,), across n (3,): away from the body's centre, or back if it widens there.
+
+    Zero where a solid stands in the way.
+    """
+    centre = solids[0].centre[b]
+    dx, dy, dz = x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]
+    across = dx * n[0] + dy * n[1] + dz * n[2]
+    dx, dy, dz = dx - across * n[0], dy - across * n[1], dz - across * n[2]
+    size = math.sqrt(dx * dx + dy * dy + dz * dz)
+    if size == 0.0:
+        return 0.0, 0.0, 0.0
+    dx, dy, dz = dx / size, dy / size, dz / size
+    e = 0.5 * spacing
+    _, fore, _ = gap_at((x[0] + e * dx, x[1] + e * dy, x[2] + e * dz), b, solids, turn, spacing)
+    _, back, _ = gap_at((x[0] - e * dx, x[1] - e * dy, x[2] - e * dz), b, solids, turn, spacing)
+    if back > fore + 1e-3 * spacing:
+        dx, dy, dz = -dx, -dy, -dz
+    if gap_ahead(x, (dx, dy, dz), b, solids, spacing) < e:
+        return 0.0, 0.0, 0.0
+    return dx, dy, dz
+
+
+@kernel
+def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, surface, lead):
+    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in the time out.
+
+    Fluid in a thin gap between a body and another solid goes with the body, and by `lead` (n, 3), m/s, of `at` (n,) to
+    the middle of the gap, and along; it is noted in its class. `of_samples`: body and shift of each particle.
+    """
+    body, shift = of_samples
+    _, middle, end, index = lists
+    position, turn, velocity, spin, _, _ = motion
+    spacing, way_out, along = ways
+    x, y, z = kinematics.place
+    u, v, w = kinematics.velocity
+    for row in range(at.size):
+        i = at[row]
+        last = -1
+        lead[row] = 0.0
+        for s in range(middle[i], end[i]):
+            j = index[s]
+            b = body[j]
+            if b < 0 or b == last:
+                continue
+            last = b
+            t = turn[b].ravel()
+            place = x[i] - shift[j, 0], y[i] - shift[j, 1], z[i] - shift[j, 2]
+            depth, gap, n = gap_at(place, b, solids, t, spacing)
+            thin = gap < _THIN * spacing
+            if depth <= 0.0 and not thin:
+                continue
+            dx, dy, dz = place[0] - position[b, 0], place[1] - position[b, 1], place[2] - position[b, 2]
+            p, q, r = spin[b]
+            bu = velocity[b, 0] + q * dz - r * dy
+            bv = velocity[b, 1] + r * dx - p * dz
+            bw = velocity[b, 2] + p * dy - q * dx
+            if thin:
+                u[i], v[i], w[i], surface[i] = bu, bv, bw, SHUT_IN
+                way, out = way_along(place, n, b, solids, t, spacing), _WAY_OUT * (0.5 * gap + depth) / way_out
+                for k in range(3):
+                    lead[row, k] = out * n[k] + along * way[k]
+                break
+            away = (u[i] - bu) * n[0] + (v[i] - bv) * n[1] + (w[i] - bw) * n[2]
+            more = max(depth / way_out - away, 0.0)
+            u[i] += more * n[0]
+            v[i] += more * n[1]
+            w[i] += more * n[2]
