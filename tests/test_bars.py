@@ -147,6 +147,7 @@ def test_cases_run_side_by_side_and_are_told_in_their_order(made, capsys, monkey
     assert told.index("case/one") < told.index("case/two")
 
 
+@pytest.mark.long
 def test_the_page_shows_every_case_and_its_pictures(tmp_path):
     fake_run.make(tmp_path / "case-one", times=(0.0, 0.4), spacing=0.03)
     rows = [runs.judged(BAR, 1.02, number(1.0, model=1.1)), runs.judged(BAR, None, None) | {"case": "case/two"}]

@@ -70,6 +70,7 @@ def test_a_measurement_counts_what_it_ran(ranks):
     assert (found["halo"] > 0) == (ranks > 1)
 
 
+@pytest.mark.long
 def test_a_heap_of_balls_is_measured_by_bodies_and_sub_steps():
     found = account.measured({"case": cases.heap(4), "settle": 0.01, "steps": 3})
     assert found["bodies"] == 80 and found["substeps"] >= 3

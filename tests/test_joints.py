@@ -213,6 +213,7 @@ def wet(tmp_path, joint, **changes):
     return Simulation(load(path, [f"{key}={value}" for key, value in changes.items()]), Comm())
 
 
+@pytest.mark.long
 def test_rails_hold_what_the_water_lifts(tmp_path):
     s = wet(tmp_path, '[[joints]]\nkind = "lock"\nbody = "plate"\nlocked = ["z"]\n')
     held = []

@@ -218,6 +218,7 @@ def test_one_failing_rank_ends_the_job(error, code, mpirun, program):
     assert error == "InputError" or "one rank fails" in ran.stderr
 
 
+@pytest.mark.long
 def test_doctor_finds_this_machine_fit_and_says_what_is_wrong(monkeypatch, capsys):
     assert doctor.examine_machine() == 0
     assert "can run here" in capsys.readouterr().out

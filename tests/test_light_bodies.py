@@ -1,7 +1,5 @@
 """Bodies that weigh less than the water they move: the coupling must be stable for them at the default step."""
 
-import itertools
-
 import numpy as np
 import pytest
 
@@ -84,11 +82,9 @@ def test_accelerations_against_a_plain_solution():
     assert rigid @ exact == pytest.approx(load[0] - water @ (exact - before) + given, rel=1e-9, abs=1e-9)
 
 
-@pytest.mark.parametrize(("weight", "second", "height"), [
-    pytest.param(*draw, marks=pytest.mark.xfail(reason="flung out at 2 m/s", strict=True))
-    if draw == ("mps", 1.5, 0.3) else draw
-    for draw in itertools.product(("mps", "wendland_c4"), (1.5, 1.8), (0.2, 0.25, 0.3))
-])  # fmt: skip
+@pytest.mark.parametrize("weight", ["mps", "wendland_c4"])
+@pytest.mark.parametrize("second", [1.5, 1.8])
+@pytest.mark.parametrize("height", [0.2, 0.25, 0.3])
 def test_no_water_is_left_in_an_edge_of_a_body_or_flung_out_of_it(weight, second, height):
     blocks = [{"name": name, "shape": {"size": [0.015, 1.0, 0.015]}, "density": 2000.0, "material": "wood",
                "position": [0.01 * x, 0.5, 0.01 * (height + 0.75)], "fixed": True}

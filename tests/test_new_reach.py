@@ -22,6 +22,7 @@ def told(capsys, *words):
     return code, out.out + out.err
 
 
+@pytest.mark.long
 def test_a_reach_of_sections_is_a_case_that_passes_check(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     reach(tmp_path)

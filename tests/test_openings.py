@@ -33,7 +33,7 @@ def balance(s):
     return s.near.fluid.size - openings.inlet.emitted + openings.outlet.removed + s.domain.lost
 
 
-@pytest.mark.parametrize("across", [None, 0.05])
+@pytest.mark.parametrize("across", [None, pytest.param(0.05, marks=pytest.mark.long)])
 def test_every_particle_is_accounted_for_and_the_discharge_is_exact(across):
     width = 1.0 if across is None else across
     s = simulation(reach({"discharge": 0.04 * width}, across=across))

@@ -155,15 +155,17 @@ def sunk_volume(bodies, level):
 
 
 def on_decks(s, level):
-    """Volume of the water that stands on each body more than a spacing above a level, m3: the body carries it."""
+    """Volume of the water that stands over each body, more than a spacing above a level, m3: the body carries it."""
     p, at = s.domain.particles, s.near.fluid
     place, spacing = np.stack([p.x[at], p.y[at], p.z[at]], 1), s.case.spacing
     volumes = []
     for half, centre, axes, height in zip(
         s.bodies.forms.half, s.bodies.position, matrices(s.bodies.quaternion), level, strict=True
     ):
-        away = np.linalg.norm(np.maximum(np.abs((place - centre) @ axes) - half, 0.0), axis=1)
-        stands = (away < 1.5 * spacing) & (place[:, 2] > height + spacing)
+        way = (place - centre) @ axes
+        way -= np.clip(way, -half, half)  # from the nearest point of the body
+        away, up = np.linalg.norm(way, axis=1), way @ axes[2]
+        stands = (away < 1.5 * spacing) & (up > 0.5 * away) & (place[:, 2] > height + spacing)
         volumes.append(stands.sum() * spacing**s.case.dimensions)
     return np.array(volumes)
 

@@ -122,6 +122,7 @@ def test_the_painter_puts_things_where_they_are(run):
     assert np.ptp(gate[:3]) < 0.1 and gate[3] > 0.3
 
 
+@pytest.mark.long
 def test_spheres_without_water_have_a_page(tmp_path):
     case = Path(__file__).parents[1] / "cases" / "bouncing_sphere" / "impulse.toml"
     assert main(["run", str(case), "-o", str(tmp_path / "out"), "--until", "0.05"]) == 0

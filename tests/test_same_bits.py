@@ -66,7 +66,8 @@ def test_the_case_does_what_the_comparison_needs(one_rank, name):
 
 
 @pytest.mark.parametrize(("name", "way"), [
-    ("3d", "two ranks"), ("3d", "three ranks"), ("2d", "two ranks"), ("2d", "two threads"),
+    ("3d", "three ranks"), ("2d", "two ranks"), ("2d", "two threads"),
+    pytest.param("3d", "two ranks", marks=pytest.mark.long),
     pytest.param("2d", "three ranks", marks=pytest.mark.long),
     pytest.param("3d", "two threads", marks=pytest.mark.long),
     *(pytest.param(name, "two ranks, cuts that stay", marks=pytest.mark.long) for name in ("2d", "3d")),

@@ -133,7 +133,7 @@ def test_shallow_water_goes_back_to_that_of_its_packing(shallow):
     p = domain.particles
     inside = p.z[near.fluid] < 0.5
     assert (p.surface[near.fluid] == np.where(inside, INTERNAL, SURFACE)).all()
-    expected = [1.01 + 2.5 * 0.1 * (packed(p, near, i, scheme) - 1.01) for i in near.fluid[inside]]
+    expected = [1.01 + 0.8 * 0.1 * (packed(p, near, i, scheme) - 1.01) for i in near.fluid[inside]]
     assert shifted_density(domain, near, scheme, 0.1)[inside] == pytest.approx(expected, rel=1e-12)
 
 

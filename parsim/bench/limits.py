@@ -87,7 +87,7 @@ def _passes(p, at, lattice, close2):
             at,
             lists,
             p.kinematics,
-            tables.Pressures(p.p, p.scale, isotropy(p)),
+            tables.Pressures(p.p, p.scale, isotropy(p), p.surface),
             lattice.weight,
             forces,
             one,

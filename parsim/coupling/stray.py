@@ -49,10 +49,8 @@ class Stray:
         pose: of the bodies; solids: see `gap_ahead`. The impulse is not given back: these are single particles.
         """
         p, samples = flow.particles, self.samples
-        of_samples, motion = (p.body, samples.shift), samples.motion(*pose)
-        turn_out(
-            self.beside, flow.near.lists, of_samples, motion, solids, self._ways, p.kinematics, p.surface, self._lead
-        )
+        of_samples, motion, noted = (p.body, samples.shift), samples.motion(*pose), (p.surface, self._lead)
+        turn_out(self.beside, flow.near.lists, of_samples, motion, solids, self._ways, p.kinematics, noted)
 
     def lead_out(self, p, dt):
         """Move what is shut in along its gap for dt, s, once its places are those of the step: it gains no speed."""
@@ -96,12 +94,14 @@ def way_along(x, n, b, solids, turn, spacing):
 
 
 @kernel
-def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, surface, lead):
+def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
     """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in the time out.
 
-    Fluid in a thin gap between a body and another solid goes with the body, and by `lead` (n, 3), m/s, of `at` (n,) to
-    the middle of the gap, and along; it is noted in its class. `of_samples`: body and shift of each particle.
+    Fluid in a thin gap between a body and another solid goes with the body, and besides, `lead` (n, 3) of `at` (n,),
+    m/s, to the middle of the gap, and along; its class says so. `of_samples`: body and shift of each particle;
+    `noted`: the classes of all, and `lead`.
     """
+    surface, lead = noted
     body, shift = of_samples
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion

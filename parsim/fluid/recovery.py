@@ -10,7 +10,7 @@ from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.state import INTERNAL, VICINITY
 
 _BELOW2 = 0.92  # squared cosine of the widest angle between the way to a bed and the plumb line
-_SQUEEZED = 2.5  # times the pull in deep water
+_SQUEEZED = 0.8  # times the pull in deep water
 
 
 class Recovery(NamedTuple):
@@ -72,7 +72,7 @@ def recover(at, lists, place, solid, around, weight, recovery, n):
 
     Shifting moves particles but not the evolved n, which would drift. So n is pulled where no surface or body is in the
     support and no wall within sqrt(near2). Water so thin that it has no such place is pulled where it sees the surface
-    and a bed straight below, and more strongly, to the measure with what the surface has cut off (`packing`). Under the
+    and a bed straight below, to the measure with what the surface has cut off (`packing`). Under the
     waterline of other walls that would take 0.1 % off the level of a narrow tank. `solid`: scale (n,) and body (n,).
     """
     c, surface = around

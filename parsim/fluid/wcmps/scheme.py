@@ -182,8 +182,7 @@ class WCMPS:
         """
         forces, count = self._forces(dt), at.size
         out = tables.Reaction(np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 6)))
-        given = at, near.lists, p.kinematics, p.acceleration, _pressures(p), p.surface, self.lattice.weight
-        sweeps.reaction(*given, forces, out)
+        sweeps.reaction(at, near.lists, p.kinematics, p.acceleration, _pressures(p), self.lattice.weight, forces, out)
         if rubbing:
             given = at, near.lists, p.kinematics, self._smooth.weight
             friction.drag_samples(*given, rubbing, self._rub, out.force)
@@ -293,7 +292,7 @@ class WCMPS:
 
 
 def _pressures(p):
-    return tables.Pressures(p.p, p.scale, isotropy(p))
+    return tables.Pressures(p.p, p.scale, isotropy(p), p.surface)
 
 
 def _shifts(p):

@@ -27,7 +27,7 @@ class Settings(Table):
     collision_distance: Share = Field(0.9, description="distance of water that comes too close, over the spacing")
     shifting: Switch = Field(True, description="whether particles are shifted to keep them evenly spread")
     recovery: Share = Field(
-        0.1, description="rate at which shifted water takes the density of its arrangement, over 2 sqrt(g / depth)"
+        0.3, description="rate at which shifted water takes the density of its arrangement, over 2 sqrt(g / depth)"
     )
 
     @property

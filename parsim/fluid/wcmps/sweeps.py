@@ -34,7 +34,7 @@ def momentum(at, lists, kinematics, pressures, weight, forces, acceleration, aro
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     ax, ay, az = acceleration.x, acceleration.y, acceleration.z
-    p, scale, isotropy = pressures
+    p, scale, isotropy, _ = pressures
     txx, txy, txz, tyz, tzz = isotropy
     own, whole, close2, push, drag, hit, dt, _ = forces
     c, inward, viscous = around.concentration, around.inward, around.viscous
@@ -97,18 +97,18 @@ def momentum(at, lists, kinematics, pressures, weight, forces, acceleration, aro
 
 
 @rows
-def reaction(at, lists, kinematics, acceleration, pressures, surface, weight, forces, out):
+def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out):
     """Pair accelerations that body samples give back to the water they see, times -1: rows of out.force.
 
     They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `force` by
     -`response` da, a symmetric matrix that is never negative, by its elements xx, xy, xz, yy, yz, zz (samples, 6).
-    Which pairs collide is told by the velocities at the start of the step; water shut in by `surface` (n,) does not.
+    Which pairs collide is told by the velocities at the start of the step; water shut in does not.
     """
     start, middle, index = lists.start, lists.middle, lists.index
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     ax, ay, az = acceleration
-    p, scale, isotropy = pressures
+    p, scale, isotropy, surface = pressures
     txx, txy, txz, tyz, tzz = isotropy
     _, _, close2, push, _, hit, dt, density = forces
     force, lever, response = out.force, out.lever, out.response

@@ -8,11 +8,12 @@ from parsim.particles.tables import Traceless, Vectors
 
 
 class Pressures(NamedTuple):
-    """What the pressure force is made of: p (n,), Pa, scale (n,), and what makes it isotropic."""
+    """What the pressure force is made of: p (n,), Pa, scale (n,), what makes it isotropic; class (n,)."""
 
     p: np.ndarray
     scale: np.ndarray
     isotropy: Traceless
+    surface: np.ndarray
 
 
 class Forces(NamedTuple):
