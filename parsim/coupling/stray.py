@@ -22,11 +22,12 @@ _THIN = 0.7  # gap, in spacings, under which a layer has parted into drops
 
 
 class Ways(NamedTuple):
-    """spacing, m; time in which what is inside a body comes out, s; speed along a gap, m/s."""
+    """spacing, m; time in which what is inside a body comes out, s; speed along a gap, m/s; unit vector down, or 0."""
 
     spacing: float
     way_out: float
     along: float
+    down: tuple[float, float, float]
 
 
 class Stray:
@@ -36,7 +37,9 @@ class Stray:
         self.samples = samples
         way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
         # as fast along a gap as what falls half a spacing, for the pressure that drives it is unknown
-        self._ways = Ways(case.spacing, way_out, math.sqrt(math.hypot(*case.gravity) * case.spacing))
+        pull = math.hypot(*case.gravity)
+        down = tuple(g / (pull or 1.0) for g in case.gravity)
+        self._ways = Ways(case.spacing, way_out, math.sqrt(pull * case.spacing), down)
 
     def find(self, domain, near):
         """Note, after a rebuild, which of this rank's water may meet a body."""
@@ -70,10 +73,10 @@ def gap_at(x, b, solids, turn, spacing):
 
 
 @kernel
-def way_along(x, n, b, solids, turn, spacing):
-    """Unit vector (3,) along the gap at x (3,), across n (3,): away from the body's centre, or back if it widens there.
+def way_along(x, n, b, solids, turn, spacing, down):
+    """Unit vector (3,) along the gap at x (3,), across n (3,): away from the body's centre, but not steeply up.
 
-    Zero where a solid stands in the way.
+    Back if the gap widens there; zero where a solid stands in the way.
     """
     centre = solids[0].centre[b]
     dx, dy, dz = x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]
@@ -82,6 +85,7 @@ def way_along(x, n, b, solids, turn, spacing):
     size = math.sqrt(dx * dx + dy * dy + dz * dz)
     if size == 0.0:
         return 0.0, 0.0, 0.0
+    size = -size if dx * down[0] + dy * down[1] + dz * down[2] < -0.5 * size else size
     dx, dy, dz = dx / size, dy / size, dz / size
     e = 0.5 * spacing
     _, fore, _ = gap_at((x[0] + e * dx, x[1] + e * dy, x[2] + e * dz), b, solids, turn, spacing)
@@ -105,7 +109,7 @@ def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
     body, shift = of_samples
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion
-    spacing, way_out, along = ways
+    spacing, way_out, along, down = ways
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     for row in range(at.size):
@@ -131,7 +135,7 @@ def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
             bw = velocity[b, 2] + p * dy - q * dx
             if thin:
                 u[i], v[i], w[i], surface[i] = bu, bv, bw, SHUT_IN
-                way, out = way_along(place, n, b, solids, t, spacing), _WAY_OUT * (0.5 * gap + depth) / way_out
+                way, out = way_along(place, n, b, solids, t, spacing, down), _WAY_OUT * (0.5 * gap + depth) / way_out
                 for k in range(3):
                     lead[row, k] = out * n[k] + along * way[k]
                 break
