@@ -7,6 +7,7 @@ from test_water import POOL, SQUARE, TANK, simulation
 from parsim.coupling.gaps import gap_to_plane
 from parsim.errors import InputError
 from parsim.geometry.nearby import near_bodies
+from parsim.particles.state import SHUT_IN
 from parsim.solid.shapes import BoxShape
 from parsim.solid.shapes.forms import forms_of
 from parsim.solid.shapes.kernels import ahead
@@ -14,7 +15,6 @@ from parsim.solid.shapes.kernels import ahead
 WEIGHT = 9810.0 * 0.06**2  # of the water that the square displaces, N/m
 SPREAD = 0.1  # of the lift of a fixed body six particles thick, also in the open; without films it is -4 on the bed
 FIXED = SQUARE | {"fixed": True}
-POND = TANK | {"box": {"max": [0.3, 1.0, 0.2]}, "water": {"fill": [{"min": [0.0, 0.0, 0.0], "max": [0.3, 1.0, 0.12]}]}}
 
 
 def mean_load(bodies, data=POOL, until=0.3):
@@ -78,18 +78,19 @@ def test_a_drop_does_not_lift_what_it_falls_on():
     assert load[2] < 0.02 * WEIGHT
 
 
-@pytest.mark.parametrize("speed", [pytest.param(0.0, marks=pytest.mark.long), 0.3])
+@pytest.mark.long
+@pytest.mark.parametrize("speed", [0.0, 0.3])
 def test_a_plate_that_sinks_comes_to_lie_on_the_bed_and_not_on_the_drops_under_it(speed):
     """Drops shut in under it carried it like balls: it slid on for seconds, and the tank rang by spacings of head."""
     plate = SQUARE | {"shape": {"size": [0.16, 1.0, 0.03]}, "density": 2800.0, "position": [0.14, 0.5, 0.05]}
-    s = simulation(POND | {"bodies": [plate | {"velocity": [speed, 0.0, 0.0]}]})
+    s = simulation(POOL | {"bodies": [plate | {"velocity": [speed, 0.0, 0.0]}]})
     rows = []
     while s.time < 1.5:
         s.step()
         if s.time > 1.2:
             rows.append([s.bodies.contact_load[0, 2], abs(s.bodies.velocity[0, 0])])
     up, slide = np.mean(rows, axis=0)
-    assert up == pytest.approx(1800.0 * 9.81 * 0.16 * 0.03, rel=0.08) and slide < 1e-4
+    assert up == pytest.approx(1800.0 * 9.81 * 0.16 * 0.03, rel=0.05) and slide < 1e-4
 
 
 def test_patches_cover_the_body():
@@ -132,9 +133,40 @@ def test_water_inside_a_body_is_turned_out_through_the_nearest_face():
     inside, outside = near.fluid[np.argsort(np.hypot(p.x[near.fluid] - 0.2, p.z[near.fluid] - 0.15))[:2]]
     p.x[inside], p.z[inside], p.w[inside] = 0.2, 0.178, -1.0
     pose = b.position, b.quaternion
-    s.solids.stray.turn_out(s.flow(), pose, s.solids.films.around(np.zeros(4), *pose))
+    s.solids.stray.turn_out(s.flow(), pose, s.solids.films.around(np.zeros(4), *pose), 1e-4)
     assert p.w[inside] == pytest.approx(0.5 + 0.002 / (5 * 0.01 / s.case.speed)) and p.u[inside] == 0.0
     assert p.w[outside] == p.u[outside] == 0.0
+
+
+def led(bodies, place):
+    """Class of a particle of water put at `place` (x, z), m, and how it is led, (2,), m/s."""
+    s = simulation(POOL | {"bodies": bodies})
+    p, b, stray = s.domain.particles, s.bodies, s.solids.stray
+    row = np.argmin(np.hypot(p.x[stray.beside] - place[0], p.z[stray.beside] - place[1]))
+    i, pose = stray.beside[row], (b.position, b.quaternion)
+    p.x[i], p.z[i] = place
+    stray.turn_out(s.flow(), pose, s.solids.films.around(np.zeros(4), *pose), 1e-3)
+    return p.surface[i], stray._lead[row, [0, 2]]
+
+
+def test_what_is_shut_in_is_led_away_from_where_solids_touch():
+    disc = FIXED | {"shape": {"kind": "disc", "diameter": 0.12}, "position": [0.2, 0.5, 0.06]}
+    wide = FIXED | {"shape": {"size": [0.12, 1.0, 0.06]}, "position": [0.2, 0.5, 0.034]}
+    for side in (-1.0, 1.0):
+        for body in (disc, wide):
+            found, way = led([body], (0.2 + side * 0.02, 0.002))
+            assert found == SHUT_IN and side * way[0] > 0.2 and abs(way[1]) < 0.12
+    leaning = wide | {"angles": [0.0, 4.0, 0.0], "position": [0.2, 0.5, 0.0343]}
+    found, way = led([leaning], (0.19, 0.002))
+    assert found == SHUT_IN and way[0] < -0.2, "the gap is wider upstream, as the body leans downstream"
+    left, right = (FIXED | {"name": name, "position": [x, 0.5, 0.15]} for name, x in (("left", 0.17), ("right", 0.234)))
+    found, way = led([left, right], (0.202, 0.17))
+    assert found == SHUT_IN and way[1] < -0.2, "not up between them"
+
+
+def test_water_on_bodies_that_stand_in_each_other_is_not_shut_in():
+    left, right = (FIXED | {"name": name, "position": [x, 0.5, 0.15]} for name, x in (("left", 0.18), ("right", 0.22)))
+    assert led([left, right], (0.2, 0.184))[0] != SHUT_IN
 
 
 @pytest.mark.parametrize("x", [0.01, 0.031, 0.37])

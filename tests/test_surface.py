@@ -42,7 +42,7 @@ def shift(domain, near, scheme, pull=0.1, slope=0.0):
 def recovering(scheme, pull):
     """Constants of the recovery by the share `pull`."""
     return recovery.Recovery(
-        scheme.radius**2, 0.21**2, scheme.number, scheme.own, scheme.whole, scheme.cut, *DOWN, pull
+        scheme.radius**2, 0.21**2, scheme.number, scheme.own, scheme.whole, scheme.cut, *DOWN, pull, 0.8 * pull
     )
 
 

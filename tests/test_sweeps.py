@@ -11,7 +11,7 @@ from parsim.fluid.reference import Lattice
 from parsim.fluid.wcmps import sweeps, tables, updates
 from parsim.fluid.wcmps.fields import NORMAL, VISCOUS, isotropy
 from parsim.fluid.weights import WEIGHTS
-from parsim.particles.state import DETACHED, INTERNAL, SURFACE, VICINITY
+from parsim.particles.state import DETACHED, INTERNAL, SHUT_IN, SURFACE, VICINITY
 from parsim.particles.tables import Traceless, Vectors
 
 SIZE, RE = np.array([1.3, 0.9, 0.7]), 0.2
@@ -147,13 +147,13 @@ def test_boundary_pressure_sweep(mixed, weight):
     p.ax[near.boundary] = 0.5
     p.body[near.boundary[::2]] = 0
     pressure, sucked = p.p.copy(), [0, 0]
-    walls.boundary_pressure(
-        near.boundary, near.lists, p.body, p.place, p.acceleration, WEIGHTS[weight].of_radius(RE), (*g, rho), pressure
-    )
+    p.surface[near.fluid[::5]] = SHUT_IN
+    which, of_radius = (p.body, p.surface), WEIGHTS[weight].of_radius(RE)
+    walls.boundary_pressure(near.boundary, near.lists, which, p.place, p.acceleration, of_radius, (*g, rho), pressure)
     acceleration = np.stack([p.ax, p.ay, p.az], 1)
     for i in near.boundary:
         j, d, _, r, w, _ = row(p, near, i, "fluid", weight)
-        w = w / r**2
+        w = np.where(p.surface[j] == SHUT_IN, 0.0, w / r**2)
         mean = (w * (p.p[j] - rho * (np.array(g) - acceleration[i]) @ d.T)).sum() / w.sum()
         solid = int(p.body[i] >= 0)
         sucked[solid] += mean < 0.0
@@ -164,6 +164,7 @@ def test_boundary_pressure_sweep(mixed, weight):
 def test_what_bodies_get_is_what_the_water_lost(mixed, weight):
     p, near = mixed
     of_radius, forces = WEIGHTS[weight].of_radius(RE), tables.Forces(1.0, 50.0, 0.1**2, 0.3, 0.7, 2.0, 0.05, 3.0)
+    p.surface[near.fluid] = INTERNAL
     acceleration = np.random.default_rng(4).normal(size=(3, len(p)))
     back, a = reaction(p, near, of_radius, forces, acceleration, p.p).force, np.stack([acceleration, acceleration])
     for k, ends in enumerate((near.end, near.middle)):
@@ -182,12 +183,12 @@ def test_the_water_on_a_sample_is_linear_in_its_acceleration(mixed, weight):
     of_radius, forces = WEIGHTS[weight].of_radius(RE), tables.Forces(0.0, 0.0, 0.1**2, 0.3, 0.0, 2.0, 0.05, 3.0)
     at, change = near.boundary, np.array([0.7, -1.1, 0.4])
     p.body[at] = 0
+    p.surface[near.fluid[::5]] = SHUT_IN
     found = []
     for more in (0.0 * change, change):
         a, pressure = np.tile(more[:, None], len(p)), p.p.copy()
-        walls.boundary_pressure(
-            at, near.lists, p.body, p.place, Vectors(*a), of_radius, (0.0, 0.0, -9.0, 3.0), pressure
-        )
+        which, fall = (p.body, p.surface), (0.0, 0.0, -9.0, 3.0)
+        walls.boundary_pressure(at, near.lists, which, p.place, Vectors(*a), of_radius, fall, pressure)
         out, lever, response = reaction(p, near, of_radius, forces, a, pressure)
         found.append((out, pressure[at], lever, response))
     (before, low, lever, response), (after, high, _, _) = found

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from parsim.coupling.gaps import Bodies, gap_ahead
+from parsim.coupling.gaps import FAR, Bodies, gap_ahead
 from parsim.fluid.weights.choice import weight_at
 from parsim.geometry.faces import period, planes_of_walls
 from parsim.geometry.nearby import near_bodies
@@ -21,7 +21,7 @@ from parsim.geometry.rotation import matrices, to_global
 from parsim.machine.jit import kernel
 from parsim.particles.state import BODY, SHUT_IN
 
-_NEAR, _FAR = 1.0, 2.5  # gaps, in spacings, up to which a film is whole and beyond which there is none
+_NEAR = 1.0  # gap, in spacings, up to which a film is whole; from FAR on there is none
 _FEED = 4.0  # a quarter of a layer of water in sight of a rim wets it
 
 
@@ -97,7 +97,7 @@ class Films:
         self._row = row
         patches = self._patch[self.samples.here]
         self._here = np.sort(patches[patches >= 0])
-        span = self.bodies.radius + 0.5 * (_FAR + 2.0) * self._spacing
+        span = self.bodies.radius + 0.5 * (FAR + 2.0) * self._spacing
         self._first, self._others = near_bodies(self.bodies.position, span, self._period)
 
     def loads(self, domain, near, plate, position, quaternion, gravity):
@@ -132,7 +132,7 @@ class Films:
     def around(self, plate, position, quaternion):
         """All that a gap may end at, with the bodies at a pose: see `gap_ahead`; `plate` is the gate's outline (4,)."""
         turn = matrices(quaternion).reshape(-1, 9)
-        bodies = Bodies(position, turn, self.bodies.forms, self._first, self._others, self._period)
+        bodies = Bodies(position, turn, self.bodies.forms, self.bodies.radius, self._first, self._others, self._period)
         return bodies, self._planes, plate
 
     def keep(self, wet, dry, heads):
@@ -217,12 +217,12 @@ def patch_loads(here, patches, lists, points, solids, water, film, found):
                     edge = (centre[b, 0] + ex, centre[b, 1] + ey, centre[b, 2] + ez)
                     out = to_global(turn[b], normal[c, 0], normal[c, 1], normal[c, 2])
                     gap = gap_ahead(edge, out, b, solids, spacing)
-                    if gap > _FAR * spacing:
+                    if gap > FAR * spacing:
                         dry[k, f] = 1.0 - share
         if value <= 0.0 or film[b, 1 + f] == 0.0 or before >= 1.0:
             continue
         gap = gap_ahead(x, n, b, solids, spacing)
-        closed = min(max((_FAR - gap / spacing) / (_FAR - _NEAR), 0.0), 1.0)
+        closed = min(max((FAR - gap / spacing) / (FAR - _NEAR), 0.0), 1.0)
         force = -value * film[b, 1 + f] * area[m] * closed * (1.0 - before)
         fx, fy, fz = force * n[0], force * n[1], force * n[2]
         load[k, 0], load[k, 1], load[k, 2] = fx, fy, fz

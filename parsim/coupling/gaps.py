@@ -9,13 +9,16 @@ from parsim.machine.jit import kernel
 from parsim.solid.shapes.forms import Forms
 from parsim.solid.shapes.kernels import ahead
 
+FAR = 2.5  # spacings beyond which a gap holds water as any other room
+
 
 class Bodies(NamedTuple):
-    """Centre (b, 3), turn (b, 9) and forms of the bodies; others[first[b]:first[b + 1]] are near b; period (3,), m."""
+    """Centre (b, 3), turn (b, 9), forms, radius (b,), m; others[first[b]:first[b + 1]] are near b; period (3,), m."""
 
     centre: np.ndarray
     turn: np.ndarray
     forms: Forms
+    radius: np.ndarray
     first: np.ndarray
     others: np.ndarray
     period: np.ndarray
@@ -38,11 +41,13 @@ def gap_to_plane(x, n, plane):
 def gap_ahead(x, n, b, solids, spacing):
     """Distance from x (3,) on body `b` along n (3,) to the nearest wall, gate or other body; inf where there is none.
 
+    Of other bodies those within FAR spacings.
+
     `solids`: Bodies, the walls' planes, and the gate (4,): its low and high x, the height of its lower edge, and 1
     where there is one.
     """
     bodies, planes, gate = solids
-    centre, turn, forms, first, others, period = bodies
+    centre, turn, forms, radius, first, others, period = bodies
     gap = np.inf
     for w in range(len(planes)):
         gap = min(gap, gap_to_plane(x, n, planes[w]))
@@ -56,7 +61,10 @@ def gap_ahead(x, n, b, solids, spacing):
             dx -= period[0] * np.rint(dx / period[0])
         if period[1] < np.inf:
             dy -= period[1] * np.rint(dy / period[1])
-        place = to_body(turn[d], dx, dy, x[2] - centre[d, 2])
+        dz, reach = x[2] - centre[d, 2], radius[d] + FAR * spacing
+        if dx * dx + dy * dy + dz * dz > reach * reach:
+            continue
+        place = to_body(turn[d], dx, dy, dz)
         along = to_body(turn[d], n[0], n[1], n[2])
         gap = min(gap, ahead(forms, d, place, along, spacing))
     return gap

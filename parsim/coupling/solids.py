@@ -193,7 +193,7 @@ class Solids:
             if self._wet:
                 pose = self.bodies.drifted(0.5 * dt)
                 with self.timers("move"):
-                    self.stray.turn_out(flow, pose, self.films.around(self._plate(time + 0.5 * dt), *pose))
+                    self.stray.turn_out(flow, pose, self.films.around(self._plate(time + 0.5 * dt), *pose), dt)
             with self.timers("contacts"):
                 self.contacts.step(self.bodies, self._load if self._wet else self._turn(flow, dt), time, dt)
                 if flow.turning:

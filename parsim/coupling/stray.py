@@ -22,10 +22,11 @@ _THIN = 0.7  # gap, in spacings, under which a layer has parted into drops
 
 
 class Ways(NamedTuple):
-    """spacing, m; time in which what is inside a body comes out, s; speed along a gap, m/s; unit vector down, or 0."""
+    """spacing, m; rates out of a body and to the middle of a gap, 1/s; speed along a gap, m/s; unit vector down."""
 
     spacing: float
-    way_out: float
+    out: float
+    middle: float
     along: float
     down: tuple[float, float, float]
 
@@ -34,26 +35,33 @@ class Stray:
     """Brings stray water of a case out; `beside`: the particles (n,) of this rank's water that may meet a body."""
 
     def __init__(self, case, samples):
-        self.samples = samples
-        way_out = _WAY_OUT * case.spacing / case.speed if case.speed else math.inf
+        self.samples, self._spacing = samples, case.spacing
+        self._rate = case.speed / case.spacing
         # as fast along a gap as what falls half a spacing, for the pressure that drives it is unknown
-        pull = math.hypot(*case.gravity)
-        down = tuple(g / (pull or 1.0) for g in case.gravity)
-        self._ways = Ways(case.spacing, way_out, math.sqrt(pull * case.spacing), down)
+        self._along = math.sqrt(math.hypot(*case.gravity) * case.spacing)
 
     def find(self, domain, near):
         """Note, after a rebuild, which of this rank's water may meet a body."""
         self.beside = near.fluid[domain.near(BODY, "kind")[near.fluid]]
         self._lead = np.zeros((self.beside.size, 3))
 
-    def turn_out(self, flow, pose, solids):
+    def turn_out(self, flow, pose, solids, dt):
         """Turn the velocity of water that is inside a body so that it comes out again; see what is shut in beside one.
 
-        pose: of the bodies; solids: see `gap_ahead`. The impulse is not given back: these are single particles.
+        pose: of the bodies; solids: see `gap_ahead`; dt: of the step, s, in which what is shut in goes a tenth of a
+        spacing along its gap at most. The impulse is not given back: these are single particles.
         """
-        p, samples = flow.particles, self.samples
-        of_samples, motion, noted = (p.body, samples.shift), samples.motion(*pose), (p.surface, self._lead)
-        turn_out(self.beside, flow.near.lists, of_samples, motion, solids, self._ways, p.kinematics, noted)
+        p, samples, pull = flow.particles, self.samples, math.hypot(*flow.gravity) or 1.0
+        ways = Ways(
+            self._spacing,
+            self._rate / _WAY_OUT,
+            min(self._rate, 0.25 / dt),
+            min(self._along, 0.1 * self._spacing / dt),
+            tuple(g / pull for g in flow.gravity),
+        )
+        of_samples = p.body, samples.shift, samples.bodies.fixed
+        motion, noted = samples.motion(*pose), (p.surface, self._lead)
+        turn_out(self.beside, flow.near.lists, of_samples, motion, solids, ways, p.kinematics, noted)
 
     def lead_out(self, p, dt):
         """Move what is shut in along its gap for dt, s, once its places are those of the step: it gains no speed."""
@@ -73,18 +81,26 @@ def gap_at(x, b, solids, turn, spacing):
 
 
 @kernel
+def across(dx, dy, dz, n):
+    """What of a vector is across n (3,)."""
+    along = dx * n[0] + dy * n[1] + dz * n[2]
+    return dx - along * n[0], dy - along * n[1], dz - along * n[2]
+
+
+@kernel
 def way_along(x, n, b, solids, turn, spacing, down):
     """Unit vector (3,) along the gap at x (3,), across n (3,): away from the body's centre, but not steeply up.
 
-    Back if the gap widens there; zero where a solid stands in the way.
+    Under a ball, which has its centre straight behind, up. Back if the gap widens there; zero if a solid is in the way.
     """
     centre = solids[0].centre[b]
-    dx, dy, dz = x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]
-    across = dx * n[0] + dy * n[1] + dz * n[2]
-    dx, dy, dz = dx - across * n[0], dy - across * n[1], dz - across * n[2]
+    dx, dy, dz = across(x[0] - centre[0], x[1] - centre[1], x[2] - centre[2], n)
     size = math.sqrt(dx * dx + dy * dy + dz * dz)
-    if size == 0.0:
-        return 0.0, 0.0, 0.0
+    if size < 1e-6 * spacing:
+        dx, dy, dz = across(-down[0], -down[1], -down[2], n)
+        size = math.sqrt(dx * dx + dy * dy + dz * dz)
+        if size < 1e-6:
+            return 0.0, 0.0, 0.0
     size = -size if dx * down[0] + dy * down[1] + dz * down[2] < -0.5 * size else size
     dx, dy, dz = dx / size, dy / size, dz / size
     e = 0.5 * spacing
@@ -99,22 +115,23 @@ def way_along(x, n, b, solids, turn, spacing, down):
 
 @kernel
 def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
-    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth in the time out.
+    """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth at the rate out.
 
     Fluid in a thin gap between a body and another solid goes with the body, and besides, `lead` (n, 3) of `at` (n,),
-    m/s, to the middle of the gap, and along; its class says so. `of_samples`: body and shift of each particle;
-    `noted`: the classes of all, and `lead`.
+    m/s, to the middle of the gap, and along; its class says so. Bodies that move come before fixed ones; where two
+    overlap by more than half a spacing there is no gap. `of_samples`: body and shift of each particle, and whether a
+    body is fixed; `noted`: the classes of all, and `lead`.
     """
     surface, lead = noted
-    body, shift = of_samples
+    body, shift, fixed = of_samples
     _, middle, end, index = lists
     position, turn, velocity, spin, _, _ = motion
-    spacing, way_out, along, down = ways
+    spacing, out, middling, along, down = ways
     x, y, z = kinematics.place
     u, v, w = kinematics.velocity
     for row in range(at.size):
         i = at[row]
-        last = -1
+        last, caught = -1, False
         lead[row] = 0.0
         for s in range(middle[i], end[i]):
             j = index[s]
@@ -125,8 +142,8 @@ def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
             t = turn[b].ravel()
             place = x[i] - shift[j, 0], y[i] - shift[j, 1], z[i] - shift[j, 2]
             depth, gap, n = gap_at(place, b, solids, t, spacing)
-            thin = gap < _THIN * spacing
-            if depth <= 0.0 and not thin:
+            thin = -0.5 * spacing < gap < _THIN * spacing
+            if (caught and fixed[b]) or (not thin and (caught or depth <= 0.0)):
                 continue
             dx, dy, dz = place[0] - position[b, 0], place[1] - position[b, 1], place[2] - position[b, 2]
             p, q, r = spin[b]
@@ -135,12 +152,15 @@ def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
             bw = velocity[b, 2] + p * dy - q * dx
             if thin:
                 u[i], v[i], w[i], surface[i] = bu, bv, bw, SHUT_IN
-                way, out = way_along(place, n, b, solids, t, spacing, down), _WAY_OUT * (0.5 * gap + depth) / way_out
+                way, off = way_along(place, n, b, solids, t, spacing, down), middling * (0.5 * gap + depth)
                 for k in range(3):
-                    lead[row, k] = out * n[k] + along * way[k]
+                    lead[row, k] = off * n[k] + along * way[k]
+                caught = True
+                if fixed[b]:
+                    continue
                 break
             away = (u[i] - bu) * n[0] + (v[i] - bv) * n[1] + (w[i] - bw) * n[2]
-            more = max(depth / way_out - away, 0.0)
+            more = max(depth * out - away, 0.0)
             u[i] += more * n[0]
             v[i] += more * n[1]
             w[i] += more * n[2]

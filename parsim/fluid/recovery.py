@@ -10,11 +10,13 @@ from parsim.machine.jit import kernel, prange, rows
 from parsim.particles.state import INTERNAL, VICINITY
 
 _BELOW2 = 0.92  # squared cosine of the widest angle between the way to a bed and the plumb line
-_SQUEEZED = 0.8  # times the pull in deep water
 
 
 class Recovery(NamedTuple):
-    """Constants of `recover`: pull, the share of a step; near2, m2; the way h down; the rest of `Lattice`."""
+    """Constants of `recover`: pull, the share of a step, thin, that of thin water; near2, m2; the way h down.
+
+    The rest: see `Lattice`.
+    """
 
     radius2: float
     near2: float
@@ -26,6 +28,7 @@ class Recovery(NamedTuple):
     hy: float
     hz: float
     pull: float
+    thin: float
 
 
 @kernel
@@ -87,6 +90,6 @@ def recover(at, lists, place, solid, around, weight, recovery, n):
             continue
         if seen:
             packed = recovery.own + packing(i, lists, place, scale, weight, recovery.cut)
-            n[i] += _SQUEEZED * pull * (n0 * packed / whole - n[i])
+            n[i] += recovery.thin * (n0 * packed / whole - n[i])
         else:
             n[i] += pull * (n0 * c[i] - n[i])

@@ -90,7 +90,7 @@ def misplaced(at, place, walls, bodies, gate, slack, count):
 
 @kernel
 def count_surface(at, surface):
-    """Number of surface and detached particles among `at`."""
+    """Number of particles at the surface, detached or shut in, among `at`."""
     total = 0
     for i in at:
         total += surface[i] >= SURFACE

@@ -177,7 +177,7 @@ def write_water(path: Path | str, points: np.ndarray, fields: Mapping[str, np.nd
     """Write one frame of water: ``points`` (n, 3) in m, ``fields`` name -> array (n,) or (n, k).
 
     Usual fields: id int64, velocity (n, 3) m/s, pressure Pa, class uint8 (0 internal, 1 near the surface, 2 surface,
-    3 detached), density_ratio. Raises WriteError.
+    3 detached, 4 shut in between solids), density_ratio. Raises WriteError.
     """
     fields = {name: np.asarray(values) for name, values in fields.items()}
     with WaterFrame(path, len(points), specification(fields), time, step) as frame:

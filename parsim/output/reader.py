@@ -117,7 +117,8 @@ class Run:
         """One frame of water, as a dict; -1 is the last. Raises InputError for a frame there is not.
 
         time (s), step; position (n, 3) m, id (n,), velocity (n, 3) m/s, pressure (n,) Pa, class (n,) with 0 internal,
-        1 near the surface, 2 surface, 3 detached, density_ratio (n,) of the number density to its reference.
+        1 near the surface, 2 surface, 3 detached, 4 shut in between solids, density_ratio (n,) of the number density to
+        its reference.
         """
         with self._frame("water", frame) as file:
             root = file["VTKHDF"]

@@ -10,7 +10,7 @@ import numpy as np
 from parsim.particles.tables import Kinematics, Vectors
 
 FLUID, BODY, GATE_UP, GATE_DOWN, WALL, INLET = 0, 1, 2, 3, 4, 5
-INTERNAL, VICINITY, SURFACE, DETACHED, SHUT_IN = 0, 1, 2, 3, 4  # the last two push nothing
+INTERNAL, VICINITY, SURFACE, DETACHED, SHUT_IN = 0, 1, 2, 3, 4  # the last two have no pressure
 POSITION = ("x", "y", "z")
 VELOCITY = ("u", "v", "w")
 ACCELERATION = ("ax", "ay", "az")

@@ -101,9 +101,8 @@ class SIMPS:
             if mobility:
                 solids.give_way(flow, mobility.accelerations(forces), dt)
             fall = (*(h / self.density for h in self._rise(flow)), self.density)
-            walls.boundary_pressure(
-                near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight, fall, p.p
-            )
+            given = near.boundary, near.lists, (p.body, p.surface), p.place, p.acceleration, self.lattice.weight
+            walls.boundary_pressure(*given, fall, p.p)
             if solids.pushed():
                 solids.push(flow, self._press(flow, solids, sides, 1.0), time, dt)
             if solids.driven(time + 0.5 * dt):

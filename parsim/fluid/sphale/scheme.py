@@ -18,6 +18,7 @@ from parsim.machine.timers import Timers
 from parsim.particles.state import SURFACE
 
 _BESIDE = 2.1  # spacings from a wall within which the concentration is not that of the lattice
+_THIN = 2.5  # times the recovery of deep water is that of thin water
 _LONGEST_SHIFT = 0.1  # speed of it over the largest expected one: in jets of an impact it would throw particles out
 _STAGES = {2: (0.5, 1.0), 3: (1.0 / 3.0, 0.5, 1.0)}  # how far from the start of the step each stage goes
 
@@ -128,8 +129,9 @@ class SPHALE:
         """Let volumes go back to the room that the arrangement of the particles leaves them: see `recovery.recover`."""
         lattice, at = self.lattice, near.fluid
         squares = lattice.radius**2, (_BESIDE * lattice.spacing) ** 2
+        pull = self._recovery * dt
         pulled = recovery.Recovery(
-            *squares, 1.0, lattice.own, lattice.whole, lattice.cut, *self._down, self._recovery * dt
+            *squares, 1.0, lattice.own, lattice.whole, lattice.cut, *self._down, pull, _THIN * pull
         )
         n = np.empty(len(p))
         n[at] = lattice.volume / p.omega[at]
@@ -159,7 +161,7 @@ class SPHALE:
         p, near, (time, dt) = flow.particles, flow.near, step
         with self.timers("boundary"):
             fall = (*flow.gravity, self.density)
-            given = near.boundary, near.lists, p.body, p.place, p.acceleration, self.lattice.weight
+            given = near.boundary, near.lists, (p.body, p.surface), p.place, p.acceleration, self.lattice.weight
             walls.boundary_pressure(*given, fall, p.p)
         with self.timers("bodies"):
             if solids.pushed():

@@ -22,6 +22,7 @@ _BESIDE = 2.1  # spacings from a wall within which the concentration is not that
 _CLOSE, _CROWD = 0.8, 100.0  # spacings below which shifting pushes harder, and by how much more for each spacing less
 _LONGEST_SHIFT = 0.05  # in spacings
 _LARGEST_MACH = 0.2
+_THIN = 0.8  # times the recovery of deep water is that of thin water
 
 
 class WCMPS:
@@ -137,7 +138,7 @@ class WCMPS:
         with self.timers("boundary"):
             fall, at = (*flow.gravity, self.density), near.boundary
             own = flow.turning.less(p) if flow.turning else p.acceleration
-            walls.boundary_pressure(at, near.lists, p.body, p.place, own, self.lattice.weight, fall, p.p)
+            walls.boundary_pressure(at, near.lists, (p.body, p.surface), p.place, own, self.lattice.weight, fall, p.p)
 
     def _accelerate(self, domain, near, dt):
         """Pair accelerations, concentration and surface of the fluid at the half step."""
@@ -247,16 +248,8 @@ class WCMPS:
         at, lists, place, n0 = near.fluid, near.lists, p.place, lattice.number
         surface.clamp(at, lists, p.surface, n0, self.loosest, p.n)
         surface.mark(at, lists, place, lattice.weight, domain.near(SURFACE, "surface"), p.surface, p.vectors(NORMAL))
-        pulled = recovery.Recovery(
-            lattice.radius**2,
-            (_BESIDE * lattice.spacing) ** 2,
-            n0,
-            lattice.own,
-            self._whole,
-            lattice.cut,
-            *self._down,
-            self.recovery * dt,
-        )
+        squares, pull = (lattice.radius**2, (_BESIDE * lattice.spacing) ** 2), self.recovery * dt
+        pulled = recovery.Recovery(*squares, n0, lattice.own, self._whole, lattice.cut, *self._down, pull, _THIN * pull)
         recovery.recover(at, lists, place, (p.scale, p.body), (p.c, p.surface), lattice.weight, pulled, p.n)
         shifted = shifting.Shifting(factor, _LONGEST_SHIFT * lattice.spacing, *self._down, n0 * self._steepness)
         shifting.shift(at, p.surface, p.vectors(NORMAL), shifted, _shifts(p), p.n)

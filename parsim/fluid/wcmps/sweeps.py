@@ -102,7 +102,7 @@ def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out
 
     They are linear in the sample's acceleration a: its pressure changes by `lever` (samples, 3) . da, `force` by
     -`response` da, a symmetric matrix that is never negative, by its elements xx, xy, xz, yy, yz, zz (samples, 6).
-    Which pairs collide is told by the velocities at the start of the step; water shut in does not.
+    Which pairs collide is told by the velocities at the start of the step. Water that is shut in pushes nothing.
     """
     start, middle, index = lists.start, lists.middle, lists.index
     x, y, z = kinematics.place
@@ -120,6 +120,8 @@ def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out
         xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for t in range(np.uint64(start[i]), np.uint64(middle[i])):
             j = index[t]
+            if surface[j] == SHUT_IN:
+                continue
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
             r2 = dx * dx + dy * dy + dz * dz
             inverse = 1.0 / math.sqrt(r2)
@@ -129,7 +131,7 @@ def reaction(at, lists, kinematics, acceleration, pressures, weight, forces, out
             my += g * dy
             mz += g * dz
             f = -push * g * (pi + p[j])
-            if r2 < close2 and surface[j] != SHUT_IN:
+            if r2 < close2:
                 approach = (u[j] - ui) * dx + (v[j] - vi) * dy + (w[j] - wi) * dz
                 if approach < 0.0:
                     approach -= dt * (ax[i] * dx + ay[i] * dy + az[i] * dz)
