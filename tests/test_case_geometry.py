@@ -1,6 +1,8 @@
 """Turned boxes: overlap by separating axes, and what it means for the bodies of a case."""
 
+import itertools
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -57,3 +59,18 @@ def test_rotation_is_about_x_then_y_then_z():
     assert places.rotation((90, 0, 90)) @ [0, 1, 0] == pytest.approx([0, 0, 1])
     assert places.rotation((0, 90, 90)) @ [0, 0, 1] == pytest.approx([0, 1, 0])
     assert places.rotation((0, 30, 0)) @ [1, 0, 0] == pytest.approx([math.sqrt(3) / 2, 0, -0.5])
+
+
+@pytest.mark.parametrize("period", [(np.inf, np.inf, np.inf), (2.0, np.inf, np.inf), (2.0, 2.0, np.inf)])
+def test_no_pair_of_boxes_is_missed(period):
+    rng, period = np.random.default_rng(3), np.array(period)
+    boxes = [SimpleNamespace(centre=rng.uniform(-1.0, 1.0, 3), reach=rng.uniform(0.02, 0.2, 3)) for _ in range(100)]
+    expected = []
+    for i, j in itertools.combinations(range(100), 2):
+        apart = boxes[j].centre - boxes[i].centre
+        shift = -np.where(np.isfinite(period), period * np.round(apart / period), 0.0)
+        if np.all(np.abs(apart + shift) < boxes[i].reach + boxes[j].reach):
+            expected.append((i, j, *shift))
+    assert len(expected) > 20
+    assert [(i, j, *shift) for i, j, shift in places.near_pairs(boxes, period)] == expected
+    assert list(places.near_pairs([])) == []

@@ -151,14 +151,23 @@ def _separation(first, second, between):
 
 
 def near_pairs(boxes, period=(np.inf, np.inf, np.inf)):
-    """Yield (i, j, shift) of boxes whose extents overlap, j > i; `shift` moves j to its nearest periodic image."""
+    """Yield (i, j, shift) of boxes whose extents overlap, j > i; `shift` moves j to its nearest periodic image.
+
+    In the order of i, then j. Each looks at those that begin within its reach along the axis that spreads them most.
+    """
     centres = np.array([box.centre for box in boxes]).reshape(-1, 3)
     reaches = np.array([box.reach for box in boxes]).reshape(-1, 3)
     period = np.asarray(period)
     length = np.where(np.isfinite(period), period, 0.0)
-    for i in range(len(boxes) - 1):
-        between = centres[i + 1 :] - centres[i]
+    axis = int(np.argmax(np.where(np.isfinite(period), -1.0, np.ptp(centres, axis=0)))) if len(boxes) else 0
+    order = np.argsort(centres[:, axis])
+    span = reaches[:, axis] + reaches[:, axis].max(initial=0.0)
+    ends = np.searchsorted(centres[order, axis], centres[:, axis] + [[-1.0], [1.0]] * span)
+    for i, (low, high) in enumerate(ends.T):
+        others = np.sort(order[low:high])
+        others = others[others > i]
+        between = centres[others] - centres[i]
         shifts = -length * np.round(between / period)
-        near = np.all(np.abs(between + shifts) < reaches[i + 1 :] + reaches[i], axis=1)
-        for j in np.flatnonzero(near):
-            yield i, i + 1 + int(j), shifts[j]
+        near = np.all(np.abs(between + shifts) < reaches[others] + reaches[i], axis=1)
+        for j, shift in zip(others[near].tolist(), shifts[near], strict=True):
+            yield i, j, shift
