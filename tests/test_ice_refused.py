@@ -36,6 +36,9 @@ WRONG = {
     "thickness by area": ({"thickness": {"kind": "uniform", "min": 0.05, "max": 0.1, "weight": "area"}}, {},
                           'thickness.weight = "area": is for size'),
     "aspect below 1": ({"aspect": {"kind": "uniform", "min": 0.5, "max": 2.0}}, {}, "aspect: reaches down to 0.5"),
+    "aspect of a list": (
+        {"aspect": {"kind": "list", "values": [2.0, 0.5]}}, {}, "aspect: reaches down to 0.5; must be at least 1"
+    ),
     "aspect of discs": ({"aspect": 1.5, "shape": "disc"}, {}, "aspect: discs have none; leave it out"),
     "unknown shape": ({"shape": "polygn"}, {}, "shape = 'polygn': must be 'box', 'disc' or 'polygon' (what the floes "
                                                "are; in 2D box); did you mean polygon?"),

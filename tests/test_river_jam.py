@@ -109,6 +109,7 @@ def test_the_place_of_a_jam_reaches_to_the_first_ice_that_moves():
     assert extent(x, speed, 0.5, 6.0) == (4.0, 6.0)
     speed[x == 5.5] = np.nan
     assert extent(x, speed, 0.5, 9.0) == (6.0, 8.0)
+    assert extent(x, speed, 0.5, 9.0, 1.0) == (4.0, 8.0), "no gap is less than a floe"
     assert all(math.isnan(end) for end in extent(x, np.full(10, 0.5), 0.5, 9.0))
     assert extent(x, np.zeros(10), 0.5, 20.0) == (0.0, 10.0)
 

@@ -94,6 +94,35 @@ def test_no_jam_is_told_where_none_is_sought_or_where_ice_goes_on(channel, cover
     assert found.jam is None and found.kind == "none" and section._jam(found) == ["No ice jam."]
 
 
+def test_a_jam_is_not_known_where_the_run_is_too_short_for_one(channel, monkeypatch):
+    short = channel.tracks.time < channel.wait
+    rows = {name: getattr(channel.tracks, name)[short] for name in ("time", "x", "home", "speed", "quaternion")}
+    monkeypatch.setattr(channel, "tracks", channel.tracks._replace(**rows))
+    found = verdict(channel)
+    assert found.kind == "unknown" and "is not known: the run is shorter than the" in section._jam(found)[0]
+
+
+def test_floes_left_behind_are_no_jam(channel, monkeypatch):
+    """All but one are gone when the others of the made up run have come to stand."""
+    tracks, stands = channel.tracks, verdict(channel).jam.begin
+    x, home, speed = tracks.x.copy(), tracks.home.copy(), tracks.speed.copy()
+    gone = np.ix_(tracks.time >= stands, np.flatnonzero(channel.loose)[1:])
+    x[gone], home[gone], speed[gone] = np.nan, np.nan, np.nan
+    monkeypatch.setattr(channel, "tracks", tracks._replace(x=x, home=home, speed=speed))
+    assert verdict(channel).jam is None
+
+
+def test_ice_that_is_first_seen_beyond_a_plane_has_passed_it(channel, monkeypatch):
+    tracks, body = channel.tracks, int(np.flatnonzero(channel.loose)[0])
+    x = tracks.x.copy()
+    x[:5, body], x[5:, body] = np.nan, PLANE + 1.0
+    before = channel.passed(PLANE)
+    monkeypatch.setattr(channel, "period", (np.inf, np.inf))
+    whole = channel.passed(PLANE)
+    monkeypatch.setattr(channel, "tracks", tracks._replace(x=x))
+    assert channel.passed(PLANE)[5] - whole[5] == pytest.approx(VOLUME) and len(before) == len(whole)
+
+
 def test_the_block_that_turned_is_told(covered):
     found = blocks(covered)
     assert list(found) == ["block"] and found["block"].name == "under-turned" and found["block"].critical

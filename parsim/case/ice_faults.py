@@ -52,8 +52,8 @@ def read(field, dimensions):
             wrong.append(f'{key}.weight = "area": is for size, with which the area goes; must be "number"')
         elif key != "size" and hasattr(law, "weight"):
             update[key] = law.model_copy(update={"weight": "number"})
-        if key == "aspect" and not wrong and law.at(0.0) < 1.0:
-            wrong.append(f"aspect: reaches down to {law.at(0.0):.6g}; must be at least 1, length over width")
+        if key == "aspect" and not wrong and (least := min(getattr(law, "values", (law.at(0.0),)))) < 1.0:
+            wrong.append(f"aspect: reaches down to {least:.6g}; must be at least 1, length over width")
     return field.model_copy(update=update), wrong
 
 

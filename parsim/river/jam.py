@@ -32,7 +32,8 @@ def jam(
     """The first jam that holds, else the first; None if there is none.
 
     times (T,), s; passed (T,), m3, through the control plane so far; speed (T,), m/s, mean of the ice over the reach
-    upstream of it, NaN where there is none; supply, m3/s, of ice; water, m/s, its speed; length, s: see `window`.
+    upstream of it, NaN where there is next to none; supply, m3/s, of ice; water, m/s, its speed; length, s: see
+    `window`.
     """
     if not (len(times) and np.isfinite(length)):
         return None
@@ -61,18 +62,18 @@ def _stands(times, passed, speed, supply, water, length):
     return there & (flow <= SHARE * supply) & (np.abs(mean) <= SHARE * water)
 
 
-def extent(x: np.ndarray, speed: np.ndarray, water: float, plane: float) -> tuple[float, float]:
+def extent(x: np.ndarray, speed: np.ndarray, water: float, plane: float, floe: float = 0.0) -> tuple[float, float]:
     """Where the ice stands upstream of a plane, m: (head, toe), of the columns without a gap of moving ice or none.
 
-    x (nx,), m; speed (nx,), m/s, of the ice there, NaN without. NaN where none stands.
+    Gaps up to a `floe`, m, long are none. x (nx,), m; speed (nx,), m/s, of the ice there, NaN without. NaN where none
+    stands.
     """
     stands = (np.abs(speed) <= SHARE * water) & (x <= plane)
     if not stands.any():
         return np.nan, np.nan
-    toe = int(np.flatnonzero(stands)[-1])
-    moves = np.flatnonzero(~stands[:toe])
-    half = 0.5 * (x[1] - x[0]) if len(x) > 1 else 0.0
-    return float(x[moves[-1] + 1 if len(moves) else 0] - half), float(x[toe] + half)
+    at, step = x[stands], float(x[1] - x[0]) if len(x) > 1 else 0.0
+    gaps = np.flatnonzero(np.diff(at) > 1.001 * step + floe)
+    return float(at[gaps[-1] + 1 if len(gaps) else 0] - 0.5 * step), float(at[-1] + 0.5 * step)
 
 
 def kind(layers: float, grounded: bool) -> str:

@@ -209,6 +209,9 @@ class River:
         for k in np.flatnonzero(np.char.startswith(lost["what"], "body ")) if lost else ():
             row = np.searchsorted(self.tracks.time, lost["time"][k])
             x[row : row + 1, int(lost["id"][k])] = lost["x"][k]  # where it left, beyond planes since the row before
+        first = np.isfinite(x).argmax(axis=0)
+        came = np.flatnonzero(first > 0)
+        x[first[came] - 1, came] = self.case.box.min[0]  # beyond planes since it came in
         return passed(x[:, at], self.volume[at], plane, self.period[0])
 
     def discharge(self, plane: float) -> np.ndarray:
@@ -229,7 +232,12 @@ class River:
     @property
     def wait(self) -> float:
         """Time, s, over which ice must stand to have jammed; inf without a flow."""
-        return jam.window(middle(self.size[self.loose], self.volume[self.loose]), self.drift)
+        return jam.window(self.length, self.drift)
+
+    @property
+    def length(self) -> float:
+        """Median size of the floes, m, by volume."""
+        return middle(self.size[self.loose], self.volume[self.loose])
 
     def peaks(self, body: str, kind: str, part: str) -> Peaks | None:
         """What acted on a body from 0 s on, "water" or "contact", of "fx" to "mz"; None where no sensor has told."""

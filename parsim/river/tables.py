@@ -55,7 +55,7 @@ def jam_table(found: Verdict) -> str:
     """One row: the verdict on a jam, with what it was judged by."""
     units = {"verdict": "-", "kind": "-", "begin": "s", "end": "s", "head": "m", "toe": "m", "layers": "-",
              "supply": "m3/s", "water": "m/s", "window": "s"}  # fmt: skip
-    lasts, begin, end = (found.jam.lasts, found.jam.begin, found.jam.end) if found.jam else ("none", np.nan, np.nan)
+    lasts, begin, end = (found.jam.lasts, found.jam.begin, found.jam.end) if found.jam else (found.kind, np.nan, np.nan)
     measured = (begin, end, found.head, found.toe, found.layers, found.supply, found.water, found.window)
     return text(units, [(lasts, found.kind, *map(float, measured))])
 

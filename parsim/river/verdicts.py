@@ -16,13 +16,14 @@ from parsim.river.planes import mean_speed
 if TYPE_CHECKING:
     from parsim.river.reader import River
 
+_LEAST = 0.5  # of the ice that the supply has in the reach while it drifts, without which nothing has jammed
 _NEAR = 0.5  # spacings between footprints that count as neighbours, and over the bed on which a floe has grounded
 
 
 class Verdict(NamedTuple):
     """A jam, or None; where it stands, head and toe, m, NaN where no frame shows it; how many floes lie over each other
-    where there are any, and its kind, "none" without a jam; what it was judged by: supply of ice, m3/s, speed of the
-    water, m/s, window, s."""
+    where there are any, and its kind, "none" without a jam, "unknown" if the run is shorter than the window; what it
+    was judged by: supply of ice, m3/s, speed of the water, m/s, window, s."""
 
     jam: Jam | None
     head: float
@@ -42,17 +43,21 @@ def verdict(river: River) -> Verdict | None:
     tracks, reach, plane = river.tracks, sought.reach, river.measure.control[sought.control]
     supply = sought.supply or float(river.stored(reach).mean() / (reach[1] - reach[0]) * river.drift)
     speed = mean_speed(tracks.home[:, at], tracks.speed[:, at], river.volume[at], reach)
+    # floes left behind once the ice has gone are no jam
+    enough = river.stored(reach) * river.drift >= _LEAST * supply * (reach[1] - reach[0])
+    speed = np.where(enough, speed, np.nan)
     wait = river.wait
     by = supply, river.drift, wait
     found = jam(tracks.time, river.passed(plane), speed, supply, river.drift, wait)
     if found is None:
-        return Verdict(None, np.nan, np.nan, np.nan, "none", *by)
+        known = tracks.time[-1] - tracks.time[0] >= wait
+        return Verdict(None, np.nan, np.nan, np.nan, "none" if known else "unknown", *by)
     fields, x, end = river.fields, river.columns.x, found.begin + wait
     moves, solid, cover = (
         profiles.mean_between(fields.time, of, found.begin, end)
         for of in (fields.speed, fields.solid, fields.concentration)
     )
-    head, toe = extent(x, profiles.across(moves).mean, river.drift, plane)
+    head, toe = extent(x, profiles.across(moves).mean, river.drift, plane, river.length)
     there = (x >= head) & (x <= toe)
     layers = float(ice.layers(solid[there].sum() / cover[there].sum(), river.floe)) if there.any() else np.nan
     grounded = on_the_bed(river, river.run.nearest(end, "bodies"), (head, toe)).any()

@@ -82,6 +82,8 @@ def _verdict(run):
         raise InputError(
             "no water flows down the reach before ice changes its level, to tell a jam by; see measure.before"
         )
+    if found.jam is None and found.kind == "unknown":
+        raise InputError(f"the run is shorter than the {found.window:.4g} s that make a jam; give a later run.until")
     return found
 
 

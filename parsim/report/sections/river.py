@@ -101,6 +101,8 @@ def _jam(found: Verdict | None) -> list[str]:
         return []
     if not np.isfinite(found.window):
         return ["Whether there is a jam is not known: before it no water flows down the reach; see measure.before."]
+    if found.jam is None and found.kind == "unknown":
+        return [f"Whether there is a jam is not known: the run is shorter than the {found.window:.4g} s that make one."]
     if found.jam is None:
         return ["No ice jam."]
     place = f", {found.head:.4g} to {found.toe:.4g} m" if np.isfinite(found.head) else ""
