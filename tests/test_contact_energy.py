@@ -8,6 +8,7 @@ from parsim.geometry.rotation import from_angles, turn_of, turned
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.separation import direction
+from parsim.solid.shapes import BoxShape, SphereShape
 
 DRAWS, STEPS = 2000, 10
 KEPT = ("position", "quaternion", "velocity", "spin")
@@ -124,3 +125,20 @@ def test_an_elastic_block_leaves_the_edge_of_a_gate_no_faster_than_it_came(yaw):
     go(bodies, contacts, 1e-4, 150)
     assert contacts.count == 0 and abs(bodies.spin[0, 1]) > 1.0, "it has been hit"
     assert 0.95 * came < bodies.kinetic_energy() < (1.0 + 1e-6) * came
+
+
+@pytest.mark.parametrize("shape", [BoxShape(size=(0.05, 0.05, 0.02)), SphereShape(kind="sphere", diameter=0.05)])
+@pytest.mark.parametrize("count", [2, 3, 6])
+@pytest.mark.parametrize("deep", [1e-6, 1e-4, 2e-3])
+def test_a_row_of_bodies_deep_in_each_other_comes_no_closer(shape, count, deep):
+    """Far too large on both sides of a body, forces hold each other up, and to limit each by its tank takes rounds."""
+    speed, place = np.zeros((count, 3)), np.full((count, 3), 0.5)
+    place[:, 0] = 0.3 + (0.05 - deep) * np.arange(count)
+    speed[:, 0] = 0.05 * np.linspace(1.0, -1.0, count)
+    bodies = Bodies([shape] * count, [0.03] * count, place, velocity=speed)
+    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), walls=(), young=3e9, restitution=0.5), [])
+    came, steps = bodies.kinetic_energy(), 100
+    go(bodies, contacts, 2e-4, steps)
+    apart = np.diff(bodies.position[:, 0]).min()
+    assert apart > 0.05 - deep - 3e-5, "they would have come 1 mm closer"
+    assert bodies.kinetic_energy() < (1.0 + 1e-6) * came

@@ -24,6 +24,13 @@ def test_numbers_that_fill_their_field_run_together(tmp_path):
     assert profile.elevation.tolist() == [92.883, 92.421, 92.39202, 92.054, -12.3456]
 
 
+def test_a_description_may_say_anything(tmp_path):
+    said = "BEGIN DESCRIPTION:\nIce jam of 1996 = 102.3 ft at the bridge\nBank Sta = from survey\nEND DESCRIPTION:\n"
+    text = section(8370, 0, PLANE, BANKS).replace("#Sta/Elev", said + "#Sta/Elev")
+    assert said in text
+    assert hecras.read(reach(tmp_path, section(8504, 134.1, PLANE, BANKS), text))[1].banks == BANKS
+
+
 def test_cut_lines_run_together_too(tmp_path):
     cut = [
         (305873.538392269, 5106302.71035319),

@@ -250,6 +250,19 @@ def test_what_an_extra_brings_is_told_where_it_is_missing(tmp_path, monkeypatch,
     assert said in str(error.value)
 
 
+def test_an_empty_cell_is_a_hole(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("x,y,z,code\n0,0,1,7\n1,0,,7\n0,1,3,7\n1,1,4,7\n2,0,4,7\n2,1,5,7\n")
+    assert np.array_equal(terrain.read(path).z, [[1.0, 3.0], [np.nan, 4.0], [4.0, 5.0]], equal_nan=True)
+
+
+def test_rows_may_give_no_data_with_fewer_digits_than_the_head(tmp_path):
+    path = tmp_path / "bed.asc"
+    path.write_text("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -3.40282346639e+038\n"
+                    "1 2\n-3.402823e+038 4\n")  # fmt: skip
+    assert np.isnan(terrain.read(path).z).sum() == 1
+
+
 def test_points_on_one_line_are_no_surface(tmp_path):
     pytest.importorskip("scipy")
     with pytest.raises(InputError, match="its points lie on one line"):

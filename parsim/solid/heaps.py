@@ -34,7 +34,7 @@ from parsim.solid.forces import free_time
 from parsim.solid.heap_tables import hand_back, heap_of, list_near, store
 from parsim.solid.search import FEATURE
 from parsim.solid.separation import BALLS
-from parsim.solid.tanks import LAPSE, ROUNDING, ROUNDS, SHEAR, share_within
+from parsim.solid.tanks import LAPSE, ROUNDING, SHEAR, share_within
 from parsim.solid.tanks import NOW as HELD
 
 _LIFE = 40  # sub-steps that a list of what is near is to last
@@ -199,7 +199,7 @@ def _lessen(heap, span):
                     continue
                 own = 0.5 * span * span * blocks.answer_to(heap.move, p, q, pair, i)
                 if pair[i + WORK] > pair[i + STORED] + ROUNDING * own:
-                    share = share_within(pair[i + WORK], own, pair[i + STORED]) if rounds < ROUNDS else 0.0
+                    share = share_within(pair[i + WORK], own, pair[i + STORED], rounds)
                     blocks.load_pair(load, p, q, pair, i, share - 1.0)
                     blocks.slacken(pair, i, share)
                     over, stirred[p], stirred[q] = True, rounds + 1, rounds + 1

@@ -30,7 +30,7 @@ from parsim.solid.table import INVERSE, INVOLVED, LIGHT, LOAD, LOSS, MEAN, ROLE,
 STORED, LOST, SHEAR, LAPSE, BEFORE, NOW, SHEAR_BEFORE, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 8, 14
 SHARE, BEND, RADIUS, DEEP = 20, 21, 22, 23
 KEPT = 4  # columns, the first, that last from step to step
-ROUNDS = 10  # of making forces smaller that depend on each other; what is too large then becomes zero
+ROUNDS, LAST_ROUND = 10, 100  # of making forces smaller that depend on each other: see `share_within`
 ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
@@ -96,9 +96,7 @@ def restrain(m, touch, which, rows, span):
                 continue
             tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
             if tanks[c, WORK] > tanks[c, STORED] + ROUNDING * own:
-                over, share = True, 0.0
-                if rounds < ROUNDS:
-                    share = share_within(tanks[c, WORK], own, tanks[c, STORED])
+                over, share = True, share_within(tanks[c, WORK], own, tanks[c, STORED], rounds)
                 _apply(m, touch, c, share - 1.0)
                 _slacken(touch, c, share)
                 for b in (pairs[c, A], pairs[c, B]):
@@ -144,11 +142,19 @@ def _account(m, touch, which, span):
 
 
 @kernel
-def share_within(work, own, stored):
-    """Largest share of loads whose work is `stored`, as share (work - own) + share^2 own; all in J."""
+def share_within(work, own, stored, rounds):
+    """Largest share of loads whose work is `stored`, as share (work - own) + share^2 own; all in J.
+
+    After ROUNDS a growing power of it, at least half: forces on both sides of a body, far too large, hold each other up
+    and go down by little in each. Nothing after LAST_ROUND; when that was ROUNDS, three blocks deep in each other went
+    on into each other.
+    """
+    if rounds >= LAST_ROUND:
+        return 0.0
     other = work - own
     root = math.sqrt(other * other + 4.0 * own * stored)
-    return 2.0 * stored / (root + other) if other > 0.0 else (root - other) / (2.0 * own)
+    share = 2.0 * stored / (root + other) if other > 0.0 else (root - other) / (2.0 * own)
+    return share * max(share ** max(rounds - ROUNDS, 0), 0.5)
 
 
 @kernel

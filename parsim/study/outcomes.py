@@ -110,7 +110,7 @@ class Asked(Table):
             value = self.function(run, **arguments)
         except InputError as error:
             raise InputError([f"{run.folder}: study.outcome: {message}" for message in error.messages]) from None
-        except (LookupError, ValueError, StopIteration) as error:
+        except (ArithmeticError, LookupError, ValueError, StopIteration) as error:
             raise InputError(f"{run.folder}: study.outcome: {type(error).__name__}: {error}") from None
         if isinstance(value, bool | np.bool_):
             return bool(value)

@@ -41,7 +41,8 @@ def read(path: Path) -> HeightField:
         raise InputError(
             f"{path}: holds {values.size} heights; ncols = {columns}, nrows = {rows} need {columns * rows}"
         )
-    values[(values == head.get(_NODATA, -9999.0)) | ~np.isfinite(values)] = np.nan
+    nodata = np.isclose(values, head.get(_NODATA, -9999.0), rtol=1e-6, atol=0.0)  # rows may give it with fewer digits
+    values[nodata | ~np.isfinite(values)] = np.nan
     x, y = (
         head[key] + size * (np.arange(number) + (0.5 if key.endswith("corner") else 0.0))
         for key, number in zip(places, (columns, rows), strict=True)

@@ -102,10 +102,12 @@ def _section(path, number, head, lines):
     except (IndexError, ValueError):
         raise InputError(f"{place}: Type RM Length L Ch R = {','.join(head)}: must be 1, station, L, Ch, R") from None
     blocks, ice, banks = {}, {}, None
+    told = False  # in a description, which may say anything
     for at, line in enumerate(lines):
         key, equals, value = line.partition("=")
         key = key.strip()
-        if not equals:
+        told = (told or key.startswith("BEGIN DESCRIPTION")) and not key.startswith("END DESCRIPTION")
+        if told or not equals:
             continue
         if key in _WIDTHS:
             blocks[key] = _fields(place, key, value, lines[at + 1 :])

@@ -26,11 +26,15 @@ def read(path: Path) -> HeightField | Triangles:
     rows, begun, columns = [], False, [0, 1, 2]
     for number, line in enumerate(path.read_text(encoding="utf-8-sig").split("\n"), 1):
         parts, place = line.partition("#")[0].replace(";", " ").split(), f"{path}: line {number}: {line.strip()[:60]}"
-        words = " ".join(parts).replace(",", " ").split()
-        if not words:
+        cells = line.partition("#")[0].strip().split(";" if ";" in line else ",")
+        whole = len(cells) > 2 and all(
+            len(cell.replace(",", " ").split()) < 2 for cell in cells
+        )  # an empty one is a hole
+        words = [cell.strip() for cell in cells] if whole else " ".join(parts).replace(",", " ").split()
+        if not any(words):
             continue
         try:
-            rows.append([float(words[at]) for at in columns if at < len(words)])
+            rows.append([float(words[at] or "nan") for at in columns if at < len(words)])
         except ValueError:
             if begun:
                 raise InputError(f"{place}: must be numbers x, y, z") from None
