@@ -131,14 +131,14 @@ def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
     u, v, w = kinematics.velocity
     for row in range(at.size):
         i = at[row]
-        last, caught = -1, False
+        one, two, three, caught = -1, -1, -1, False  # bodies seen last, of which a list has many samples
         lead[row] = 0.0
         for s in range(middle[i], end[i]):
             j = index[s]
             b = body[j]
-            if b < 0 or b == last:
+            if b < 0 or b == one or b == two or b == three:
                 continue
-            last = b
+            one, two, three = b, one, two
             t = turn[b].ravel()
             place = x[i] - shift[j, 0], y[i] - shift[j, 1], z[i] - shift[j, 2]
             depth, gap, n = gap_at(place, b, solids, t, spacing)
