@@ -116,11 +116,10 @@ def test_ice_that_is_first_seen_beyond_a_plane_has_passed_it(channel, monkeypatc
     tracks, body = channel.tracks, int(np.flatnonzero(channel.loose)[0])
     x = tracks.x.copy()
     x[:5, body], x[5:, body] = np.nan, PLANE + 1.0
-    before = channel.passed(PLANE)
     monkeypatch.setattr(channel, "period", (np.inf, np.inf))
     whole = channel.passed(PLANE)
     monkeypatch.setattr(channel, "tracks", tracks._replace(x=x))
-    assert channel.passed(PLANE)[5] - whole[5] == pytest.approx(VOLUME) and len(before) == len(whole)
+    assert channel.passed(PLANE)[5] - whole[5] == pytest.approx(VOLUME)
 
 
 def test_the_block_that_turned_is_told(covered):

@@ -25,11 +25,10 @@ def read(path: Path) -> HeightField | Triangles:
     """
     rows, begun, columns = [], False, [0, 1, 2]
     for number, line in enumerate(path.read_text(encoding="utf-8-sig").split("\n"), 1):
-        parts, place = line.partition("#")[0].replace(";", " ").split(), f"{path}: line {number}: {line.strip()[:60]}"
-        cells = line.partition("#")[0].strip().split(";" if ";" in line else ",")
-        whole = len(cells) > 2 and all(
-            len(cell.replace(",", " ").split()) < 2 for cell in cells
-        )  # an empty one is a hole
+        text, place = line.partition("#")[0].strip(), f"{path}: line {number}: {line.strip()[:60]}"
+        parts, cells = text.replace(";", " ").split(), text.split(";" if ";" in text else ",")
+        # an empty cell is a hole, where each holds one word
+        whole = len(cells) > 2 and all(len(cell.replace(",", " ").split()) < 2 for cell in cells)
         words = [cell.strip() for cell in cells] if whole else " ".join(parts).replace(",", " ").split()
         if not any(words):
             continue
