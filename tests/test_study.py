@@ -148,7 +148,6 @@ def test_a_run_that_fails_again_is_not_tried_for_ever(study, monkeypatch):
 
 
 @pytest.mark.parametrize(("end", "code", "told"), [
-    ("bad", 2, "error: run 2: one thing\nerror: run 2: the other\n"),
     ("full", 74, "run-2: the other"),
     ("stop", 75, ""),
 ])  # fmt: skip
@@ -159,6 +158,30 @@ def test_what_would_end_every_run_ends_the_study(end, code, told, study, monkeyp
     machine.law = lambda case, number: 0.5
     assert study(BELOW + SEEDS % ", most = 9") == 0
     assert study.told()["rows"][0]["outcomes"] == 9 and machine.numbers.count(1) == 1
+
+
+def test_a_run_that_is_refused_has_failed_and_the_study_goes_on(study, monkeypatch, capsys):
+    machine = Machine(monkeypatch, lambda case, number: "bad" if number == 2 else 0.2)
+    assert study(BELOW + SEEDS % ", most = 5") == 1
+    assert study.told()["rows"][0]["outcomes"] == 4 and machine.numbers == [1, 2, 3, 4, 5]
+    assert study.rows()[1]["state"] == "failed"
+    assert "failed: refused: one thing; the other; see" in capsys.readouterr().out
+    assert study(BELOW + SEEDS % ", most = 5") == 1 and machine.numbers[5:] == [2], "it may be accepted another time"
+
+
+def test_a_run_whose_outcome_cannot_be_asked_does_not_end_the_study(study, monkeypatch, capsys):
+    Machine(monkeypatch, lambda case, number: 0.2)
+    late = BELOW.replace('column = "z"', 'column = "z", level = 0.3, after = 9.0').replace("last", "crossing_time")
+    assert study(late + SEEDS % ", most = 3") == 1, "none has an outcome"
+    assert study.told()["runs"]["no outcome"] == 3 and study.told()["complete"]
+    assert "the series bodies has no row from t = 9 s on" in study.rows()[0]["note"]
+
+
+def test_a_run_that_was_stopped_is_not_missed_where_the_others_are_enough(study, monkeypatch):
+    machine = Machine(monkeypatch, lambda case, number: "kill" if number == 12 else 0.5)
+    text = BELOW + SEEDS % ", most = 30, least = 4, within = %s"
+    assert study(text % 0.1) == 1 and 12 in machine.numbers and not study.told()["complete"]
+    assert study(text % 0.2) == 0 and study.told()["complete"] and study.told()["runs"]["stopped"] == 1
 
 
 def test_a_signal_stops_all_runs_and_the_study(study, monkeypatch):

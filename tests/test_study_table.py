@@ -45,7 +45,8 @@ def test_votes_near_the_edge_need_seeds(tmp_path):
         read(write(tmp_path, BELOW + SEARCH % "" + seeds)).near_votes
         for seeds in ("", SEEDS % "", SEEDS % ", most = 2", SEEDS % ", most = 4")
     ]
-    assert votes == [1, 3, 1, 3]
+    votes.append(read(write(tmp_path, BELOW + SEARCH % ", votes = 5" + SEEDS % "")).near_votes)
+    assert votes == [1, 3, 1, 3, 5]
 
 
 def test_check_counts_the_runs(tmp_path, capsys):
@@ -103,6 +104,10 @@ def test_the_schema_knows_the_study_and_all_outcomes(capsys):
     (BELOW + SEARCH % ", votes = 2" + SEEDS % "", "study.bisection.votes = 2: must be odd"),
     (BELOW + SEARCH % ", votes = 3", "study.bisection.votes = 3: must be 1, for there are no study.seeds"),
     (BELOW + SEARCH % ", near_votes = 5" + SEEDS % ", most = 4", "near_votes = 5: must be at most study.seeds.most, 4"),
+    (BELOW + SEARCH % ", votes = 3, near_votes = 1" + SEEDS % "", "near_votes = 1: must be at least study.bis"),
+    (BELOW + 'fit = "logistic"\ngrid = {"bodies.sphere.density" = [8.0, 9.0], title = ["a", "b"]}', "needs one key"),
+    ('outcome = {kind = "jam_forms"}\n' + SEEDS % "", 'study.outcome.kind = "jam_forms": needs measure.jam in the'),
+    ('outcome = {kind = "block_goes_under", body = "sphere"}\n' + SEEDS % "", "needs measure.cover in the case"),
     (BELOW + SEARCH % "" + SEEDS % ", within = 0.1", "study.seeds.within: does not go with a bisection"),
     (BELOW + (SEARCH % "").replace("0.5", "0.1"), "study.bisection.yes = 0.1: must not be the value of no"),
     (BELOW + (SEARCH % "").replace("0.02", "0.4"), "width = 0.4: must be less than the distance between no and"),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import numpy as np
@@ -22,6 +22,7 @@ from parsim.validate.river_measures import measured
 from parsim.validate.series_measures import track
 
 if TYPE_CHECKING:
+    from parsim.case.model import Case
     from parsim.output.reader import Run
 
 Text = Annotated[str, Strict()]
@@ -120,8 +121,8 @@ class Asked(Table):
             return value
         return (self.above is None or value > self.above) and (self.below is None or value < self.below)
 
-    def faults(self, bodies: Sequence[str] | None) -> list[str]:
-        """What of series, columns and `bodies` (their names, None: any) a run would not know: a list of messages."""
+    def faults(self, case: Case | None) -> list[str]:
+        """What of series, columns, bodies and measures a run of the case, None: any, would not know: messages."""
         told = []
         if _is_bool(self.function) and not (self.above is None and self.below is None):
             told.append(f"study.outcome: {getattr(self, CHOICE)} says yes or no by itself; leave above and below out")
@@ -137,10 +138,18 @@ class Asked(Table):
             columns = TABLES[series]
             named = [("column", self.column), *((f"rows.{name}", name) for name in rows)]  # type: ignore[attr-defined]
             told += [_unknown(key, name, columns) for key, name in named if name not in columns]
-        body = getattr(self, "body", rows.get("body"))
-        if bodies is not None and body is not None and body not in bodies:
+        if case is None:
+            return told
+        kind, needed = getattr(self, CHOICE), _NEEDED.get(getattr(self, CHOICE))
+        if needed and getattr(case.measure, needed, None) is None:
+            told.append(f'study.outcome.kind = "{kind}": needs measure.{needed} in the case')
+        body, bodies = getattr(self, "body", rows.get("body")), [body.name for body in case.bodies]
+        if body is not None and body not in bodies:
             told.append(_unknown("body" if hasattr(self, "body") else "rows.body", body, bodies))
         return told
+
+
+_NEEDED = {"jam_forms": "jam", "jam_holds": "jam", "block_goes_under": "cover"}  # of the table measure
 
 
 def _is_bool(function):

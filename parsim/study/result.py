@@ -13,9 +13,9 @@ from typing import Any
 
 from parsim.output.frames import write_text
 from parsim.study.plan import Edge, Sample, Search, Wanted
-from parsim.study.runs import DONE, FAILED, RUNNING, STOPPED, WAITING, Runs, Seen
+from parsim.study.runs import DONE, FAILED, NO_OUTCOME, RUNNING, STOPPED, WAITING, Runs, Seen
 from parsim.study.statistics import Curve, Estimate, bootstrap, estimate, logistic
-from parsim.study.table import Study, cells, numbers
+from parsim.study.table import Study, cells, numbers, varied
 
 TABLE, SUMMARY = "study.csv", "study.json"
 
@@ -65,15 +65,20 @@ class Result:
 
     @property
     def counts(self) -> Counter[str]:
-        """How many runs there are of each state, those without an outcome as "no outcome"."""
+        """How many runs there are of each state, those that are done without an outcome by themselves."""
         return Counter(
-            "no outcome" if seen.state == DONE and seen.outcome is None else seen.state for _, seen in self.runs
+            NO_OUTCOME if seen.state == DONE and seen.outcome is None else seen.state for _, seen in self.runs
         )
 
     @property
     def complete(self) -> bool:
-        """Whether no row wants more runs, and none was cut short."""
-        return all(row.complete for row in self.rows) and not self.counts[STOPPED]
+        """Whether no row wants more runs."""
+        return all(row.complete for row in self.rows)
+
+    @property
+    def cut_short(self) -> bool:
+        """Whether a row lacks runs that were stopped."""
+        return any(seen.state == STOPPED for row in self.rows if not row.complete for _, seen in row.runs)
 
     def places(self) -> list[float]:
         """The number that differs between rows, (rows,); else their numbers."""
@@ -84,8 +89,7 @@ class Result:
 def result(study: Study, plans: Sequence[Sample | Search], runs: Runs) -> Result:
     """What follows of what is there."""
     rows = [_row(study, plan, runs) for plan in plans]
-    varied = [key for key, values in numbers(study.rows()).items() if len(set(values)) > 1]
-    key = study.bisection.key if study.bisection else varied[0] if len(varied) == 1 else None
+    key = study.bisection.key if study.bisection else varied(study.rows())
     found = Result(study, rows, key, None)
     if not study.fit or study.bisection:
         return found
@@ -109,7 +113,7 @@ def _row(study, plan, runs):
         plan.row,
         tuple(plan.changes),
         seen,
-        not wanted,
+        not plan.wanted(runs.ended),
         estimate(told) if told and not search else None,
         bootstrap(tuple(told), tuple(study.quantiles))[1:] if numeric and not search else (),
         edge,
@@ -144,7 +148,7 @@ def summary(found: Result) -> dict[str, Any]:
     """What study.json holds."""
     return {
         "complete": found.complete,
-        "runs": {state: found.counts[state] for state in (DONE, "no outcome", FAILED, STOPPED, RUNNING, WAITING)},
+        "runs": {state: found.counts[state] for state in (DONE, NO_OUTCOME, FAILED, STOPPED, RUNNING, WAITING)},
         "curve": _curve(found.curve),
         "rows": [_summary(found, row) for row in found.rows],
     }

@@ -21,6 +21,7 @@ from parsim.study.table import Study, cells
 
 TABLE = "runs.csv"
 DONE, FAILED, RUNNING, STOPPED, WAITING = "done", "failed", "running", "stopped", "waiting"
+NO_OUTCOME = "no outcome"  # done, but nothing follows of it
 
 
 @dataclass
@@ -44,7 +45,7 @@ class Runs:
         self.case, self.out, self._study, self._retry = case, out, study, retry
         self._numbers: dict[tuple[str, ...], int] = {}
         self._seen: dict[int, Seen] = {}
-        self._given_up: set[int] = set()
+        self._given_up: dict[int, str] = {}  # and why
         if is_output(out):
             raise InputError(f"OUT = {out}: is the output folder of one run; give the study a folder of its own")
         if study.table is not None and Path(study.table) == (out / TABLE).resolve():
@@ -81,13 +82,17 @@ class Runs:
         csv.writer(text, lineterminator="\n").writerows([keys, *rows])
         return text.getvalue()
 
-    def known(self, run: Wanted) -> Ended | None:
+    def ended(self, run: Wanted) -> Ended | None:
         """How a run has ended; None: it has not."""
         seen = self.seen(run)
-        if seen.state == DONE:
+        return Ended(seen.outcome) if seen.state in (DONE, FAILED) else None
+
+    def known(self, run: Wanted) -> Ended | None:
+        """The same for this command: what it is not to start any more counts as ended, what it retries does not."""
+        seen = self.seen(run)
+        if seen.number in self._given_up:
             return Ended(seen.outcome)
-        failed = seen.state == FAILED and (not self._retry or seen.number in self._given_up)
-        return Ended(None) if failed or seen.number in self._given_up else None
+        return None if seen.state == FAILED and self._retry else self.ended(run)
 
     def seen(self, run: Wanted) -> Seen:
         """State and outcome of a run; what has ended is looked at once. Raises InputError for a run of another case."""
@@ -96,24 +101,27 @@ class Runs:
             self._seen[number] = self._look(number, run) if number else Seen(0, WAITING)
         return self._seen[number]
 
-    def forget(self, number: int, give_up: bool = False) -> None:
-        """Look at a run again; `give_up`: it is not to be started any more by this command."""
+    def forget(self, number: int, given_up: str = "") -> None:
+        """Look at a run again; `given_up`: why it is not to be started any more by this command."""
         self._seen.pop(number, None)
-        if give_up:
-            self._given_up.add(number)
+        if given_up:
+            self._given_up[number] = given_up
 
     def _look(self, number, wanted):
         folder = self.folder(number)
         if not is_output(folder):
             if number in self._given_up:
-                return Seen(number, FAILED, note=f"ended before it wrote anything; see {self.log(number)}")
+                return Seen(number, FAILED, note=self._given_up[number])
             return Seen(number, WAITING)
         run, case = Run(folder), load(self.case, wanted.changes)
         self._check(run, case)
         info = run.info
         status = info.get("status")
         if status == "done" and info.get("time", 0.0) >= case.run.until:
-            outcome = self._study.outcome.of(run)
+            try:
+                outcome = self._study.outcome.of(run)
+            except InputError as error:
+                return Seen(number, DONE, note="; ".join(error.messages))
             return Seen(number, DONE, outcome, "" if outcome is not None else "has no outcome")
         if status == "failed":
             return Seen(number, FAILED, note=str(info.get("error", "")))

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import IO
 
-from parsim.errors import InputError, WriteError
+from parsim.errors import WriteError
 from parsim.launch import exits, stop
 from parsim.launch.mpirun import SAME_SIGNAL, die_with_parent, heeding
 from parsim.output.lock import Lock
@@ -39,8 +39,8 @@ class Hands:
     ) -> bool:
         """Make the runs that the plans want until they want no more; False: stopped before.
 
-        `told`(number, run) is called at the end of each. Raises InputError or WriteError where a run does, once the
-        others have stopped.
+        `told`(number, run) is called at the end of each. Raises WriteError where a run cannot write, once the others
+        have stopped.
         """
         with heeding(self._hear):
             try:
@@ -98,17 +98,16 @@ class Hands:
     def _take(self, number, runs, told):
         process, file, began, run = self._running.pop(number)
         file.close()
-        code = process.returncode
+        code, log, why = process.returncode, runs.log(number), "ended before it wrote anything"
         if code == stop.STOPPED:
             self._stop()
         elif code in (exits.BAD_INPUT, exits.CANNOT_WRITE):
-            log = runs.log(number)
             said = log.read_bytes()[began:].decode(errors="replace").splitlines()
-            why = [line.removeprefix("error: ") for line in said if line.startswith("error: ")] or [f"see {log}"]
+            errors = [line.removeprefix("error: ") for line in said if line.startswith("error: ")]
             if code == exits.CANNOT_WRITE:
-                raise WriteError(runs.folder(number), why[-1])
-            raise InputError(f"run {number}: {line}" for line in why)
-        runs.forget(number, give_up=not self._stopping)
+                raise WriteError(runs.folder(number), errors[-1] if errors else f"see {log}")
+            why = "refused: " + "; ".join(errors)
+        runs.forget(number, "" if self._stopping else f"{why}; see {log}")
         told(number, run)
 
     def _hear(self, number, _):

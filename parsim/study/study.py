@@ -15,7 +15,7 @@ from parsim.study import page, slurm
 from parsim.study import result as results
 from parsim.study.plan import Sample, Search, plans
 from parsim.study.result import result
-from parsim.study.runs import FAILED, RUNNING, STOPPED, TABLE, Runs
+from parsim.study.runs import FAILED, NO_OUTCOME, RUNNING, TABLE, Runs
 from parsim.study.side import Hands
 from parsim.study.table import Study, read
 
@@ -33,7 +33,7 @@ def study(
 
     `hands` make the runs; with `gather` none is made, with `array` a Slurm script is written for those that are wanted,
     each with the walltime `time`; `retry` makes those again that have failed. 0: as far as it can go; 1: runs have
-    failed, or there is no edge; 75: stopped, to be gone on with. Raises InputError or WriteError.
+    failed, none has an outcome, or there is no edge; 75: stopped, to be gone on with. Raises InputError or WriteError.
     """
     if world()[1] > 1:
         raise InputError(f"{world()[1]} processes of this command are running; start one: -n gives each run its ranks")
@@ -68,12 +68,12 @@ def checked(case: Path, ranks: int) -> tuple[Study, list[Sample | Search]]:
     """
     asked = read(case)
     planned = plans(asked)
-    told = dict.fromkeys(asked.outcome.faults(None), "")
+    told: dict[str, str] = dict.fromkeys(asked.outcome.faults(None), "")
     for plan in planned:
         for run in plan.first():
             try:
                 loaded = load(case, run.changes)
-                told |= dict.fromkeys(asked.outcome.faults([body.name for body in loaded.bodies]), "")
+                told |= dict.fromkeys(asked.outcome.faults(loaded), "")
                 check_ranks(loaded, ranks)
             except InputError as error:
                 for message in error.messages:
@@ -111,6 +111,6 @@ def _told(asked, planned, runs):
     path = page.write(found, f"Study: {title}", runs.out)
     print(*page.lines(found), sep="\n")
     print(f"{page.counted(found)}\npage: {path}", flush=True)
-    failed = found.counts[FAILED] or found.counts[STOPPED]
+    silent = found.counts[NO_OUTCOME] and not any(row.outcomes for row in found.rows)
     no_edge = any(row.edge and row.edge.note for row in found.rows)
-    return exits.FAILED if failed or no_edge else exits.DONE
+    return exits.FAILED if found.counts[FAILED] or found.cut_short or silent or no_edge else exits.DONE

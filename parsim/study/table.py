@@ -51,7 +51,7 @@ class Bisection(Table):
     width: Positive = Field(description="distance between no and yes that is enough")
     votes: Votes = Field(1, description="runs at each value, whose majority decides; an odd number")
     near_votes: Votes | None = Field(
-        None, description="the same near the edge; left out: 3, or 1 where there are no seeds"
+        None, description="the same near the edge; left out: 3, or votes if that is more, or 1 where there are no seeds"
     )
     near: Positive = Field(4.0, description="how many widths between no and yes are near the edge")
     outside: bool = Field(True, strict=True, description="whether one value beside the edge is looked at in the end")
@@ -88,8 +88,8 @@ class Study(Table):
     @property
     def near_votes(self) -> int:
         """Runs at each value of a bisection near its edge."""
-        given = self.bisection.near_votes if self.bisection else None
-        return given or (min(3, self.repeats - (self.repeats + 1) % 2) if self.seeds else 1)
+        given, votes = (self.bisection.near_votes, self.bisection.votes) if self.bisection else (None, 1)
+        return given or (max(votes, min(3, self.repeats - (self.repeats + 1) % 2)) if self.seeds else 1)
 
 
 class _Root(Table):
@@ -137,7 +137,7 @@ def _faults(study):
     keys = [change.partition("=")[0] for change in rows[0]] if study.table is None else cells(rows)[0]
     keys += [part.key for part in (study.seeds, study.bisection) if part]
     told += [f"study: {key} is varied twice" for key in dict.fromkeys(keys) if keys.count(key) > 1]
-    if study.fit and not (study.bisection or len(_varied(rows)) == 1):
+    if study.fit and not (study.bisection or varied(rows)):
         told.append(f"study.fit = {study.fit!r}: needs one key that varies: a bisection, or one column of numbers")
     if study.fit and not study.outcome.decides:
         told.append(f"study.fit = {study.fit!r}: needs an outcome that is yes or no; give above or below")
@@ -153,9 +153,11 @@ def cells(rows: Iterable[Sequence[str]]) -> tuple[list[str], list[list[str]]]:
     return keys, [[table.get(key, "") for key in keys] for table in tables]
 
 
-def _varied(rows):
-    """The keys of numbers that differ between rows."""
-    return [key for key, values in numbers(rows).items() if len(set(values)) > 1]
+def varied(rows: list[list[str]]) -> str | None:
+    """The key that differs between rows, if it is the only one and a number in each of them."""
+    keys, values = cells(rows)
+    differ = [key for key, column in zip(keys, zip(*values, strict=True), strict=True) if len(set(column)) > 1]
+    return differ[0] if len(differ) == 1 and differ[0] in numbers(rows) else None
 
 
 def numbers(rows: list[list[str]]) -> dict[str, list[float]]:
@@ -198,6 +200,10 @@ def _of_bisection(study, search):
         if votes is not None and votes > study.repeats:
             few = f"at most study.seeds.most, {study.repeats}" if study.seeds else "1, for there are no study.seeds"
             told.append(f"study.bisection.{name} = {votes}: must be {few}")
+    if search.near_votes is not None and search.near_votes < search.votes:
+        told.append(
+            f"study.bisection.near_votes = {search.near_votes}: must be at least study.bisection.votes, {search.votes}"
+        )
     if not study.outcome.decides:
         told.append("study.bisection: needs an outcome that is yes or no; give study.outcome.above or below")
     if study.seeds and study.seeds.within is not None:
