@@ -145,3 +145,14 @@ def test_files_that_are_not_there_and_options_of_examples_are_told(tmp_path, cap
 def test_roughness_is_that_of_manning():
     assert roughness(0.03) == pytest.approx(0.1944, abs=1e-4)
     assert roughness(0.03) ** (1 / 6) / (8.1 * 9.81**0.5) == pytest.approx(0.03)
+
+
+def test_a_ditch_narrower_than_the_first_look_is_seen(tmp_path):
+    """2,000 heights across, one of them a metre deeper."""
+    y = np.arange(2000.0)
+    z = np.where(y == 1003.0, 8.0, 10.0 + 0.01 * np.abs(y - 1003.0))
+    rows = np.array([[x, v, h] for x in (0.0, 1.0, 2.0) for v, h in zip(y, z, strict=True)])
+    np.savetxt(tmp_path / "ground.xyz", rows)
+    surface = terrain.read(tmp_path / "ground.xyz")
+    cut = _cut(surface, [], [0.0, 2.0], Asked(spacing=0.5, level=10.2))
+    assert cut.counts[2] == round(2.2 / 0.5 + 0.5) + 4, "the water is as deep as the ditch"

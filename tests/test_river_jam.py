@@ -75,6 +75,8 @@ def test_what_is_no_jam():
     assert jam(TIMES, through, np.where(speed > 0.0, speed, np.nan), 0.1, 0.5, 5.0) is None, "there is no ice"
     assert jam(TIMES[:20], through[:20], 0.0 * speed[:20], 0.1, 0.5, 5.0) is None, "the run is shorter"
     assert jam(TIMES, through, 0.0 * speed, 0.1, 0.0, math.inf) is None, "nothing flows"
+    assert jam(TIMES, *stood((0.0, 9.0)), 0.1, 0.5, 5.0) is None, "it rests at the start"
+    assert jam(TIMES, *stood((0.0, 9.0), (20.0, 28.0)), 0.1, 0.5, 5.0).begin == pytest.approx(20.0, abs=0.31)
 
 
 def test_ice_that_leaves_the_reach_empty_for_a_moment_only_interrupts_a_jam():
@@ -122,33 +124,43 @@ def test_kinds_of_jam():
 COVER = blocks.Cover(2.0, 4.0)
 
 
+def way(x, tilt):
+    """The path of a block, row by row, a second each, below the cover."""
+    return blocks.Path(np.arange(float(len(x))), np.array(x), np.array(tilt), np.ones(len(x), bool))
+
+
 @pytest.mark.parametrize(("x", "tilt", "name"), [
     ((0.5, 1.5, 1.8, 1.8), (0.0, 2.0, 14.0, 5.0), "stable"),
     ((0.5, 1.5, 1.8, 1.8), (0.0, 2.0, 30.0, 20.0), "undecided"),
     ((0.5, 1.8, 2.15, 3.0), (0.0, 10.0, 40.0, 50.0), "submerged"),
     ((0.5, 1.8, 2.15, 9.0), (0.0, 10.0, 20.0, 5.0), "submerged"),
     ((0.5, 1.8, 2.05, 2.05), (0.0, 10.0, 40.0, 40.0), "stuck"),
-    ((0.5, 1.8, 2.15, 2.6), (0.0, 60.0, 60.0, 50.0), "stuck"),
+    ((0.5, 1.8, 2.15, 2.6, 2.6), (0.0, 60.0, 60.0, 50.0, 50.0), "stuck"),
     ((0.5, 1.8, 2.2, 5.0), (0.0, 60.0, 70.0, 20.0), "passed"),
     ((0.5, 1.8, 2.2, 5.0), (0.0, 95.0, 170.0, 180.0), "under-turned"),
     ((0.5, 0.6, 0.6, 0.6), (0.0, 0.0, 0.0, 0.0), "undecided"),
+    ((0.5, 1.5, 1.8, 1.85), (0.0, 2.0, 14.0, 5.0), "undecided"),  # it still moves
 ])  # fmt: skip
 def test_what_becomes_of_a_block(x, tilt, name):
     """A block of 0.4 m; that centre is a quarter of its length under the cover at 2.1 m."""
-    speed = np.array([0.5, 0.2, 0.1, 0.0])
-    found = blocks.block(np.array(x), np.array(tilt), speed, 0.4, COVER, 0.5)
+    path = way(x, tilt)
+    found = blocks.block(path, 0.4, COVER, 0.5)
+    if name in ("submerged", "stuck"):
+        beside = blocks.block(path._replace(below=np.zeros(len(x), bool)), 0.4, COVER, 0.5)
+        assert beside.name == ("passed" if x[-1] > COVER.end else "undecided"), "it is over the cover or beside it"
     assert found.name == name and found.tilt == max(tilt)
     assert found.critical == (name not in ("stable", "undecided"))
 
 
 def test_a_block_that_still_moves_is_undecided_and_one_that_left_is_known():
-    still = np.full(2, 0.3)
-    assert blocks.block(np.array([1.5, 1.8]), np.zeros(2), still, 0.4, COVER, 0.5).name == "undecided"
-    gone = np.array([1.8, 2.2, 4.5, math.nan]), np.array([0.0, 60.0, 50.0, math.nan]), np.full(4, math.nan)
-    assert blocks.block(*gone, 0.4, COVER, 0.5).name == "passed"
-    beyond = blocks.block(np.array([4.5, 5.0]), np.zeros(2), still, 0.4, COVER, 0.5)
+    assert blocks.block(way([1.5, 1.8], [0.0, 0.0]), 0.4, COVER, 0.5).name == "undecided"
+    gone = way([1.8, 2.2, 4.5, math.nan], [0.0, 60.0, 50.0, math.nan])
+    assert blocks.block(gone, 0.4, COVER, 0.5).name == "passed"
+    beyond = blocks.block(way([4.5, 5.0], [0.0, 0.0]), 0.4, COVER, 0.5)
     assert beyond.name == "undecided" and not beyond.critical, "it began downstream of the cover"
-    assert blocks.block(np.full(3, math.nan), np.zeros(3), np.zeros(3), 0.4, COVER, 0.5).name == "undecided"
+    assert blocks.block(way([math.nan] * 3, [0.0] * 3), 0.4, COVER, 0.5).name == "undecided"
+    swings = way([1.5, 1.8, 1.7, 1.8, 1.7, 1.8], [0.0] * 6)._replace(time=0.2 * np.arange(6.0))
+    assert blocks.block(swings, 0.4, COVER, 0.5).name == "undecided", "though it is where it was before"
 
 
 @pytest.mark.parametrize("start", [0.0, 30.0])

@@ -158,6 +158,7 @@ def test_a_grid_of_points_with_a_few_missing_has_holes(tmp_path):
     ("id;X;Y;Z", "P1;{x};{y};{z}"),
     ('"z","y","x"', "{z},{y},{x}"),
     ("of 1999\nn y x z\n(-) (m) (m) (m)", "7 {y} {x} {z}"),
+    ("Point,Northing,Easting,Elevation,Code", "12,{y},{x},{z},TB"),
 ])  # fmt: skip
 def test_columns_are_those_that_a_head_names(tmp_path, head, form):
     rows = [form.format(x=x, y=y, z=x + 10 * y) for x in (1, 2, 3) for y in (5, 6)]

@@ -16,7 +16,9 @@ class Sought(Table):
     control: Name = Field(description="name of the control plane that ice no longer passes")
     reach: Span = Field(description="from where to where upstream of it ice stands, m; two widths at least")
     supply: Positive | None = Field(
-        None, description="ice that comes, m3/s; left out: what is in the reach, drifting with the water"
+        None,
+        description="ice that comes, m3/s; left out: the most that comes into the reach over the time that makes a "
+        "jam, or what is in it at the start at the water's speed",
     )
 
 

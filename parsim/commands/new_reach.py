@@ -15,7 +15,7 @@ from parsim.terrain import hecras, sections
 from parsim.terrain.frame import Frame
 
 GRAVITY = 9.81  # m/s2
-_LOOKS = 401  # places along and across at which the ground is looked at first
+_LOOKS = 401  # places along and across, at least, at which the ground is looked at first
 _ROWS = 10  # particles over the greatest depth, where no spacing is asked for
 _MOST = 10**7  # heights of a bed: its field has several nodes under each
 _BANK = 4  # spacings of dry bank beside the water, and of ground under it: what the water sees
@@ -101,13 +101,8 @@ def _ends(surface, nodes, asked):
 
 def _cut(surface, nodes, ends, asked):
     """The box around the water at the level that is asked for."""
-    inside = [way for way in (sections.chainage(nodes) if nodes else ()) if ends[0] < way < ends[1]]
-    x = np.unique([*np.linspace(ends[0], ends[1], _LOOKS), *inside])
-    y = np.linspace(surface.low[1], surface.high[1], _LOOKS)
-    z, scale = surface.on(x, y, Frame()).z, asked.scale
-    whole = np.flatnonzero(~np.isnan(z).any(axis=0))
-    if not len(whole):
-        raise InputError("--from: there is no strip along x without holes in the ground; choose other stations")
+    scale = asked.scale
+    y, z, whole = _looked(surface, nodes, ends, asked.spacing / scale if asked.spacing else math.inf)
     if asked.level is not None and not math.isfinite(asked.level):
         raise InputError(f"--level {asked.level:g}: must be a finite number")
     lowest, highest = float(np.nanmin(z)), float(np.nanmax(z))
@@ -124,6 +119,8 @@ def _cut(surface, nodes, ends, asked):
         )
     spacing = asked.spacing or _nice(scale * (asked.level - lowest) / _ROWS)
     unit = spacing / scale
+    y, z, whole = _looked(surface, nodes, ends, unit)
+    lowest = float(np.nanmin(z))
     low, high = _wet(z, y, asked.level)
     held = low < y[whole[0]] or high > y[whole[-1]]
     low, high = max(low - _BANK * unit, y[whole[0]]), min(high + _BANK * unit, y[whole[-1]])
@@ -148,6 +145,24 @@ def _cut(surface, nodes, ends, asked):
         )
     top = max(math.ceil(ground.max() / spacing), under + (under - _BANK + 1) // 2)
     return _Cut(spacing, frame.origin, datum, (nx, ny, under, top), held)
+
+
+def _looked(surface, nodes, ends, step):
+    """Places y (ny,) across a reach, the ground (nx, ny) there, and which y have no hole along x, all in the file.
+
+    They are a `step` apart, or less fine if that makes too many. Raises InputError where every y has holes.
+    """
+    inside = [way for way in (sections.chainage(nodes) if nodes else ()) if ends[0] < way < ends[1]]
+    counts = [max(_LOOKS, math.ceil(span / step) + 1) for span in (ends[1] - ends[0], surface.high[1] - surface.low[1])]
+    if math.prod(counts) > _MOST:
+        counts = [_LOOKS, _LOOKS]
+    x = np.unique([*np.linspace(ends[0], ends[1], counts[0]), *inside])
+    y = np.linspace(surface.low[1], surface.high[1], counts[1])
+    z = surface.on(x, y, Frame()).z
+    whole = np.flatnonzero(~np.isnan(z).any(axis=0))
+    if not len(whole):
+        raise InputError("--from: there is no strip along x without holes in the ground; choose other stations")
+    return y, z, whole
 
 
 def _wet(z, y, level):

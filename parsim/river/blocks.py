@@ -10,7 +10,7 @@ from parsim.geometry.rotation import matrices
 
 LEVEL, FLAT, OVER = 15.0, 45.0, 90.0  # degrees: stable below, submerged flat below, under-turned from
 UNDER = 0.25  # of its length, that the centre of a submerged block is under the cover
-AT_REST = 0.05  # of the water's speed
+AT_REST = 0.05  # of its length, that a block at rest moves at most while the water passes it
 
 
 class Cover(NamedTuple):
@@ -41,32 +41,53 @@ def ups(quaternion: np.ndarray) -> np.ndarray:
     return turns @ turns[0, 2]
 
 
-def block(x: np.ndarray, tilt: np.ndarray, speed: np.ndarray, length: float, cover: Cover, water: float) -> Block:
-    """Class of a block of a `length` along x, m, from its centre (T,), m, tilt (T,), degrees, and speed (T,), m/s.
+class Path(NamedTuple):
+    """Of a block at each row (T,): time, s; x of its centre, m, NaN where it is not there; tilt, degrees; whether its
+    centre is lower than that of the cover, and not beside it."""
 
-    `water`: speed of the water, m/s. One that has turned over is "under-turned", one whose centre has come UNDER of its
-    length under the cover and had not tilted by FLAT till then is "submerged", whatever becomes of either. Any other
-    has "passed", or is "stuck" if it rests under the cover, or "stable" if it rests level at its edge. One that began
-    downstream of the cover is undecided unless it turned over.
+    time: np.ndarray
+    x: np.ndarray
+    tilt: np.ndarray
+    below: np.ndarray
+
+
+def block(path: Path, length: float, cover: Cover, water: float) -> Block:
+    """Class of a block of a `length` along x, m, by its way.
+
+    `water`: speed of the water, m/s. A block rests if it has moved by AT_REST of its length at most while the water
+    passed it once. One that has turned over is "under-turned", one whose centre has come UNDER of its length under the
+    cover and had not tilted by FLAT till then is "submerged", whatever becomes of either. Any other has "passed", or is
+    "stuck" if it rests under the cover, or "stable" if it rests level at its edge. One that began downstream of the
+    cover is undecided unless it turned over.
     """
-    there = np.isfinite(x)
-    x, tilt, speed = x[there], tilt[there], speed[there]
-    most = float(tilt.max(initial=0.0))
-    name = _name(x, tilt, speed, length, cover, water) if len(x) else "undecided"
+    there = np.isfinite(path.x)
+    path = Path(*(row[there] for row in path))
+    most = float(path.tilt.max(initial=0.0))
+    name = _name(path, length, cover, water) if there.any() else "undecided"
     return Block(name, most, name not in ("stable", "undecided"))
 
 
-def _name(x, tilt, speed, length, cover, water):
+def _name(path, length, cover, water):
+    _, x, tilt, below = path
     if (tilt >= OVER).any():
         return "under-turned"
-    under = (x >= cover.begin + UNDER * length) & (x <= cover.end)
+    under = below & (x >= cover.begin + UNDER * length) & (x <= cover.end)
     if under.any() and tilt[: under.argmax() + 1].max() < FLAT:
         return "submerged"
     if x[-1] > cover.end:
         return "passed" if x[0] <= cover.end else "undecided"
-    if abs(speed[-1]) > AT_REST * water:
+    if not _rests(path, length, water):
         return "undecided"
     if x[-1] > cover.begin:
-        return "stuck"
+        return "stuck" if below[-1] else "undecided"
     touching = x[-1] >= cover.begin - length
     return "stable" if touching and tilt[-1] < LEVEL else "undecided"
+
+
+def _rests(path, length, water):
+    """Whether a block has come to rest; not known of one that is there for less than the time that this takes."""
+    if water <= 0.0 or path.time[-1] - path.time[0] < length / water:
+        return False
+    since = np.searchsorted(path.time, path.time[-1] - length / water, side="right") - 1
+    moved = np.abs(path.x[since:] - path.x[-1]).max()
+    return bool(moved <= AT_REST * length)

@@ -29,7 +29,7 @@ def window(floe: float, speed: float) -> float:
 def jam(
     times: np.ndarray, passed: np.ndarray, speed: np.ndarray, supply: float, water: float, length: float
 ) -> Jam | None:
-    """The first jam that holds, else the first; None if there is none.
+    """The first jam that holds, else the first; None if there is none, as where ice rests at the start and drifts off.
 
     times (T,), s; passed (T,), m3, through the control plane so far; speed (T,), m/s, mean of the ice over the reach
     upstream of it, NaN where there is next to none; supply, m3/s, of ice; water, m/s, its speed; length, s: see
@@ -40,6 +40,8 @@ def jam(
     stands = _stands(times, passed, speed, supply, water, length)
     edges = np.flatnonzero(np.diff(stands, prepend=False, append=False)).reshape(-1, 2)
     every = [_lasting(times[first], times[stop - 1] + length, length, stop < len(stands)) for first, stop in edges]
+    if every and edges[0, 0] == 0 and every[0].lasts == "transient":
+        every = every[1:]
     return next((each for each in every if each.lasts == "held"), every[0] if every else None)
 
 

@@ -39,11 +39,13 @@ class Fields(NamedTuple):
 
 class Tracks(NamedTuple):
     """Of each row from 0 s on and body (T, nb, ...), NaN where one is not there: time (T,), s; x, m, without jumps at
-    sides that repeat; home, m, the same in the box; speed along x, m/s; quaternion (T, nb, 4)."""
+    sides that repeat; home, m, the same in the box; y and z, m; speed along x, m/s; quaternion (T, nb, 4)."""
 
     time: np.ndarray
     x: np.ndarray
     home: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
     speed: np.ndarray
     quaternion: np.ndarray
 
@@ -196,12 +198,12 @@ class River:
         series = {name: values[series["time"] >= 0.0] for name, values in series.items()}
         time, row = np.unique(series["time"], return_inverse=True)
         body = np.array([names[name] for name in series["body"].tolist()], int)
-        found = np.full((6, len(time), len(names)), np.nan)
-        for k, name in enumerate(("x", "u", "q0", "q1", "q2", "q3")):
+        found = np.full((8, len(time), len(names)), np.nan)
+        for k, name in enumerate(("x", "y", "z", "u", "q0", "q1", "q2", "q3")):
             found[k, row, body] = series[name]
         x, low = found[0], self.case.box.min[0]
         home = low + (x - low) % self.period[0] if np.isfinite(self.period[0]) else x
-        return Tracks(time, x, home, found[1], np.moveaxis(found[2:], 0, -1))
+        return Tracks(time, x, home, found[1], found[2], found[3], np.moveaxis(found[4:], 0, -1))
 
     def passed(self, plane: float) -> np.ndarray:
         """Ice that has passed a plane, m, by each row of the tracks (T,), m3."""

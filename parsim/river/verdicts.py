@@ -9,7 +9,7 @@ import numpy as np
 from parsim.geometry.rotation import matrices
 from parsim.river import ice, profiles
 from parsim.river.arches import neighbours, outline
-from parsim.river.blocks import Block, Cover, block, tilts, ups
+from parsim.river.blocks import Block, Cover, Path, block, tilts, ups
 from parsim.river.jam import Jam, extent, jam, kind
 from parsim.river.planes import mean_speed
 
@@ -41,7 +41,7 @@ def verdict(river: River) -> Verdict | None:
     if sought is None or not at.any() or not len(river.tracks.time):
         return None
     tracks, reach, plane = river.tracks, sought.reach, river.measure.control[sought.control]
-    supply = sought.supply or float(river.stored(reach).mean() / (reach[1] - reach[0]) * river.drift)
+    supply = sought.supply or _supply(river, reach)
     speed = mean_speed(tracks.home[:, at], tracks.speed[:, at], river.volume[at], reach)
     # floes left behind once the ice has gone are no jam
     enough = river.stored(reach) * river.drift >= _LEAST * supply * (reach[1] - reach[0])
@@ -64,6 +64,16 @@ def verdict(river: River) -> Verdict | None:
     return Verdict(found, head, toe, layers, kind(layers, bool(grounded)), *by)
 
 
+def _supply(river, reach):
+    """Ice that drifts down a reach where nothing holds it, m3/s: the most that has come into it over the time that
+    makes a jam, or, where that is more, what is in it at the start at the speed of the water."""
+    time, came = river.tracks.time, river.passed(reach[0])
+    wait = min(river.wait, float(time[-1] - time[0]))
+    begin = time[time + wait <= time[-1] * (1.0 + 1e-9)]
+    most = (np.interp(begin + wait, time, came) - came[: len(begin)]).max() / wait if wait > 0.0 else 0.0
+    return max(float(most), float(river.stored(reach)[0] / (reach[1] - reach[0]) * river.drift))
+
+
 def on_the_bed(river: River, frame: int, reach: tuple[float, float]) -> np.ndarray:
     """Which floes (nb,) with their centre in a reach, m, have a corner within half a spacing of the bed."""
     bodies = river.run.bodies(frame)
@@ -79,23 +89,27 @@ def blocks(river: River) -> dict[str, Block]:
         return {}
     names, tracks, found = river.run.body_names, river.tracks, {}
     lid = names.index(river.measure.cover)
-    cover = Cover(*(tracks.x[0, lid] + end for end in _ends(river, lid, 0)))
+    cover, right_left = (
+        [at[0, lid] + end for end in _ends(river, lid, 0, axis)] for axis, at in enumerate((tracks.x, tracks.y))
+    )
     for k in np.flatnonzero(river.loose).tolist():
         tilt, length = np.full(len(tracks.time), np.nan), np.nan
         there = np.flatnonzero(np.isfinite(tracks.x[:, k]))
         if len(there):
             tilt[there] = tilts(ups(tracks.quaternion[there, k]))
-            low, high = _ends(river, k, there[0])
+            low, high = _ends(river, k, there[0], 0)
             length = high - low
-        found[names[k]] = block(tracks.x[:, k], tilt, tracks.speed[:, k], length, cover, river.drift)
+        y, below = tracks.y[:, k], tracks.z[:, k] < tracks.z[0, lid]
+        path = Path(tracks.time, tracks.x[:, k], tilt, below & (right_left[0] <= y) & (y <= right_left[1]))
+        found[names[k]] = block(path, length, Cover(*cover), river.drift)
     return found
 
 
-def _ends(river, body, row):
-    """Where a body begins and ends along x from its centre in a row of the tracks, m."""
+def _ends(river, body, row, axis):
+    """Where a body begins and ends along x, y or z, 0 to 2, from its centre in a row of the tracks, m."""
     (turn,) = matrices(river.tracks.quaternion[row, body].copy()[None])
     shape = river.case.bodies[body].shape
-    return -float(shape.reach(-turn[0])), float(shape.reach(turn[0]))
+    return -float(shape.reach(-turn[axis])), float(shape.reach(turn[axis]))
 
 
 def outlines(river: River, frame: int) -> dict[int, np.ndarray]:

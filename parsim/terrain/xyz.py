@@ -15,13 +15,20 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _COMMA = re.compile(r"[-+]?\d+(,\d*)?")  # a number whose decimals stand behind a comma, or that a comma ends
+_HEADS = (  # each with the axis that a name stands for
+    {"x": 0, "y": 1, "z": 2},
+    dict.fromkeys(("easting", "east", "e"), 0)
+    | dict.fromkeys(("northing", "north", "n"), 1)
+    | dict.fromkeys(("elevation", "elev", "height", "z"), 2),
+)
 _FULL = 0.5  # share of the nodes of a grid from which points are taken for one with holes
 
 
 def read(path: Path) -> HeightField | Triangles:
     """The surface through the points of a file. Raises InputError.
 
-    Lines before the first numbers are passed over, but that one which names x, y and z says in which columns they are.
+    Lines before the first numbers are passed over, but that one which names x, y and z, or easting, northing and
+    elevation, says in which columns they are.
     """
     rows, begun, columns = [], False, [0, 1, 2]
     for number, line in enumerate(path.read_text(encoding="utf-8-sig").split("\n"), 1):
@@ -37,8 +44,7 @@ def read(path: Path) -> HeightField | Triangles:
         except ValueError:
             if begun:
                 raise InputError(f"{place}: must be numbers x, y, z") from None
-            names = [word.strip("\"'").lower() for word in words]
-            columns = [names.index(axis) for axis in "xyz"] if {"x", "y", "z"} <= {*names} else columns
+            columns = _columns(words) or columns
             continue
         begun = True
         if len(rows[-1]) < 3:
@@ -50,6 +56,15 @@ def read(path: Path) -> HeightField | Triangles:
     if len(points) < 3:
         raise InputError(f"{path}: holds {len(points)} points; a surface needs three or more")
     return _grid(points) or _triangles(path, points)
+
+
+def _columns(words):
+    """The columns of x, y and z among named ones, None where one is missing or there twice."""
+    for names in _HEADS:
+        axes = [names.get(word.strip("\"'").lower()) for word in words]
+        if all(axes.count(axis) == 1 for axis in range(3)):
+            return [axes.index(axis) for axis in range(3)]
+    return None
 
 
 def _grid(points):
