@@ -1,5 +1,7 @@
-"""What several test files need: jobs of several ranks that cannot hang, a folder like /tmp."""
+"""What several test files need: jobs of several ranks that cannot hang, a folder like /tmp, a study."""
 
+import csv
+import json
 import os
 import shutil
 import signal
@@ -89,3 +91,19 @@ def public():
     folder.chmod(0o1777)
     yield folder
     shutil.rmtree(folder)
+
+
+@pytest.fixture
+def study(tmp_path):
+    """`study(text, *words)`: the exit code of `parsim study` of the case with these lines in its study."""
+    from study_cases import write  # here, or every test would load what studies need
+
+    from parsim.__main__ import main
+
+    def run(text, *words):
+        return main(["study", str(write(tmp_path, text)), "-o", str(tmp_path / "out"), *words])
+
+    run.out = tmp_path / "out"
+    run.rows = lambda: list(csv.DictReader((run.out / "study.csv").open()))
+    run.told = lambda: json.loads((run.out / "study.json").read_text())
+    return run
