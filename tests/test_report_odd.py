@@ -13,10 +13,10 @@ from matplotlib.image import imread
 
 import parsim
 from parsim.errors import InputError
-from parsim.report import pictures, scene
+from parsim.report import animation, pictures, scene
 from parsim.report.build import LARGEST, Page, build
-from parsim.report.measures import MANY, published
-from parsim.report.sections import bodies, counts, gauges, loads
+from parsim.report.measures import MANY, published, wall_time
+from parsim.report.sections import bodies, counts, front, gauges, loads, speed
 
 HEAD = "case,block,quantity,low,high,model,unit,time,source\n"
 
@@ -182,3 +182,30 @@ def test_a_damaged_output_is_told_with_the_remedy(folder, name, text, said):
         (folder / name).write_bytes(text)
     with pytest.raises(InputError, match=rf"{said}.*; `parsim resume`, of a run that is done"):
         build(folder, vtk=False)
+
+
+def test_times_are_those_of_all_pieces():
+    pieces = [{"wall_s": 2.0}, {"wall_s": 1.5}, {"ended": "killed"}]
+    run = SimpleNamespace(info={"wall_s": 1.5, "time": 0.5, "pieces": pieces}, case={"run": {"settle": 0.2}})
+    assert wall_time(run) == 3.5 and dict(speed.speed(run))["wall seconds per simulated second"] == pytest.approx(5.0)
+    run.info["time"] = -0.2
+    assert "wall seconds per simulated second" not in dict(speed.speed(run))
+
+
+def test_a_film_of_a_tall_box_is_no_larger_than_an_encoder_takes():
+    assert max(animation._pixels(Figure(figsize=(8, 800))).shape) <= animation.LARGEST
+
+
+def test_a_mesh_that_is_not_here_has_no_draught():
+    shape = {"kind": "mesh", "file": "nowhere.stl"}
+    assert (
+        bodies._shape({"name": "a", "shape": shape, "density": 1.0, "material": "m", "position": [0.0, 0.0, 0.0]})
+        is None
+    )
+
+
+@pytest.mark.parametrize(("faces", "word"), [
+    ({}, "wall"), ({"x_max": "open"}, "of the box"), ({"x_max": {"kind": "wall", "velocity": [0, 1, 0]}}, "wall"),
+])  # fmt: skip
+def test_the_end_of_a_tank_is_a_wall_or_not(faces, word):
+    assert front.end(SimpleNamespace(case={"box": {"faces": faces}})) == word

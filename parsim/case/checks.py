@@ -62,6 +62,7 @@ def doubts(case):
             f"water passes as it should through {bodies.PASSAGE:g} spacings or more"
             for name, other, gap in bodies.narrow_passages(case)
         ]
+        + [f"output.sensors.{sensor.name}.{text}" for sensor in case.output.sensors for text in sensor.doubts(case)]
         + [*ice.doubts(case)]
         + case.water.scheme.doubts()
         + case.contacts.law.doubts(case.dimensions == 2)

@@ -18,7 +18,7 @@ _CROWDED = 0.5  # concentration of ice whose discharge is given
 _PROBES = 12  # per edge of a body, to see how much of it is in the water
 RANK_BYTES = 300e6  # Python, Numba and its machine code
 _FRAME_BYTES, _BODY_BYTES = 90, 2000  # in a frame: of a particle, of a body
-_ROW_BYTES, _BODY_ROW_BYTES = 600, 900  # of all series, and of each body in them
+_ROW_BYTES, _BODY_ROW_BYTES, _SENSOR_ROW_BYTES = 600, 900, 110  # of all series, of each body in them, of a sensor's row
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,8 @@ def disk(case, water):
     """Bytes on the disk that frames, series and checkpoints of a case of so many water particles will take, about."""
     bodies, time = len(case.bodies), case.run.until - case.start
     frames = math.ceil(time / case.output.frames + 2.0) * (_FRAME_BYTES * water + _BODY_BYTES * bodies)
-    series = time / case.output.series * (_ROW_BYTES + _BODY_ROW_BYTES * bodies)
+    rows = sum(sensor.rows(case) for sensor in case.output.sensors)
+    series = time / case.output.series * (_ROW_BYTES + _BODY_ROW_BYTES * bodies + _SENSOR_ROW_BYTES * rows)
     milestones = math.ceil(time / case.output.milestones) if case.output.milestones else 0
     checkpoint = water_bytes(case.water.scheme.fields) * water
     return frames, series, checkpoint * (3.0 + milestones)  # one is written before one is removed

@@ -68,6 +68,23 @@ def period(case):
     return np.array([high[a] - low[a] if again else math.inf for a, again in enumerate(repeats(case))])
 
 
+def images(case, places, reach):
+    """Places (n, 2 or 3), m, brought into the box, with their images at most `reach` (n,), m, off it: (m, 2 or 3); and
+    which of the places each is of (m,)."""
+    of, places = np.arange(len(places)), np.array(places, float)
+    for axis, length in enumerate(period(case)[: places.shape[1]]):
+        if not math.isfinite(length):
+            continue
+        low = case.box.min[axis]
+        places[:, axis] = low + (places[:, axis] - low) % length
+        near = (places[:, axis] - reach[of] < low, places[:, axis] + reach[of] > low + length)
+        moved = [places, *(places[at] for at in near)]
+        for shift, part in zip((length, -length), moved[1:], strict=True):
+            part[:, axis] += shift
+        places, of = np.concatenate(moved), np.concatenate([of, *(of[at] for at in near)])
+    return places, of
+
+
 def to_nearest_image(d, period):
     """Distances d (n,), m, along an axis to the nearest image, where things repeat after `period`, m, or never, inf."""
     return d - period * np.rint(d / period) if math.isfinite(period) else d

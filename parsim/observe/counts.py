@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from parsim.geometry.faces import planes_of_walls
+from parsim.geometry.faces import images, planes_of_walls
 from parsim.geometry.rotation import matrices, to_body
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
@@ -37,17 +37,18 @@ class Counts:
     )
 
     def __init__(self, case: Case) -> None:
-        self._walls, self._slack = planes_of_walls(case), 0.25 * case.spacing
+        self._case, self._walls, self._slack = case, planes_of_walls(case), 0.25 * case.spacing
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, at, count = s.domain.particles, s.near.fluid, np.zeros(3, np.int64)
         gate = (s.gate.min_x, s.gate.max_x, s.gate.barrier(s.time)) if s.gate else (0.0, 0.0, np.inf)
-        order = np.argsort(s.bodies.position[:, 0], kind="stable")
+        places, of = images(self._case, s.bodies.position, s.bodies.radius)
+        order = np.argsort(places[:, 0], kind="stable")
         bodies = (
-            s.bodies.position[order],
-            matrices(s.bodies.quaternion[order]),
-            reordered(s.bodies.forms, order),
+            places[order],
+            matrices(s.bodies.quaternion[of[order]]),
+            reordered(s.bodies.forms, of[order]),
             s.bodies.radius.max(initial=0.0),
         )
         misplaced(at, p.place, self._walls, bodies, gate, self._slack, count)

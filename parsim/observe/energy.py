@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Energy:
-    """One row: the step, the parts and their sum; work done and energy lost so far."""
+    """One row: the step, the parts and their sum; work done and energy lost so far.
+
+    Potential energy is told from the box's lowest corner, so that shares of the sum do not hang on where z = 0 is.
+    """
 
     name = "energy"
     columns = columns(
@@ -35,20 +38,24 @@ class Energy:
 
     def __init__(self, case: Case) -> None:
         self._case, self._unit, self._period = case, scales(case).energy, period(case)
+        corners = zip(case.gravity, case.box.min, case.box.max, strict=True)
+        self._deep = np.array([high if pull > 0.0 else low for pull, low, high in corners])
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         p, at, out = s.domain.particles, s.near.fluid, np.empty((s.near.fluid.size, 3))
         # nothing falls along an axis that repeats
-        gravity = tuple(np.where(np.isinf(self._period), gravity_at(self._case, s.time), 0.0).tolist())
+        pull = np.where(np.isinf(self._period), gravity_at(self._case, s.time), 0.0)
+        gravity, floor = tuple(pull.tolist()), float(pull @ self._deep)
         energies(at, p.kinematics, s.scheme.mass, gravity, out)
+        out[:, 1] += s.scheme.mass * floor
         out[:, :2] *= s.scheme.shares(p, at)[:, None]
         out[:, 2] = s.scheme.elastic(p, at)
         b, c = s.bodies, s.contacts
         parts = [
             *map(float, s.domain.sum(out, self._unit)),
             b.kinetic_energy(),
-            b.potential_energy(gravity),
+            b.potential_energy(gravity) + floor * float(b.mass[~b.gone].sum()),
             c.elastic_energy(),
         ]
         return [[s.dt, *parts, c.driven_work + s.solids.pull.work, c.dissipated, sum(parts)]]

@@ -51,9 +51,10 @@ class Fluxes:
         return rows
 
     def _share(self, case, x):
-        """The part of the hat that is in the box; at an outlet the water goes on beyond it."""
+        """The part of the hat that is in the box; at an outlet or an open side the water goes on beyond it."""
         if np.isfinite(self._period):
             return 1.0
-        ends = [case.box.min[0]] + [case.box.max[0]] * (case.box.faces.x_max.kind != "outlet")
-        cut = (max(1.0 - abs(side - x) / self._width, 0.0) for side in ends)
+        sides = (case.box.faces.x_min, case.box.min[0]), (case.box.faces.x_max, case.box.max[0])
+        ends = (level for side, level in sides if side.kind not in ("outlet", "open"))
+        cut = (max(1.0 - abs(level - x) / self._width, 0.0) for level in ends)
         return 1.0 - sum(0.5 * each * each for each in cut)

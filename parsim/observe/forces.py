@@ -70,25 +70,28 @@ class Forces:
         rubbed = s.scheme.rubbed(s.flow(), s.solids, at)
         values, index = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
         for k, patch in enumerate(patches):
-            behind, within = self._behind(place, patch)
+            behind, share = self._behind(place, patch)
+            within, inward = share > 0.0, self._planes[patch.wall][:3]
             first = within & (behind < self._spacing)
-            inward = self._planes[patch.wall][:3]
             pressure = np.maximum(p.p[at[first]] + head @ inward * behind[first], 0.0)  # at the wall itself
-            values += [-pressure[:, None] * inward * self._area, rubbed[within]]
+            pressure *= share[first]
+            values += [-pressure[:, None] * inward * self._area, share[within, None] * rubbed[within]]
             index += [np.full(first.sum(), 2 * k), np.full(within.sum(), 2 * k + 1)]
         total = s.domain.sum(np.concatenate(values), self._unit, np.concatenate(index), 2 * len(patches))
         return total.reshape(-1, 6)
 
     def _behind(self, place, patch):
-        """How far places (n, 3) lie behind the wall of a patch, m, and whether they are right behind it."""
+        """How far places (n, 3) lie behind the wall of a patch, m, and what share of them is right behind it."""
         plane = self._planes[patch.wall]
         behind = plane[3] - place @ plane[:3]
         along = (np.abs(plane[:3]) == 0.0) & self._used
         low, high = self._box  # beside inlet and outlet walls go on beyond it
         low = low if patch.min is None else np.maximum(low, patch.min)
         high = high if patch.max is None else np.minimum(high, patch.max)
-        within = ((place >= low) & (place < high) | ~along).all(axis=1)
+        half = 0.5 * self._spacing
+        inside = np.minimum(high, place + half) - np.maximum(low, place - half)
+        share = np.where(along, np.clip(np.round(inside / self._spacing, 9), 0.0, 1.0), 1.0).prod(axis=1)
         for name, other in self._planes.items():
             if name != patch.wall:
-                within &= place @ other[:3] > other[3]
-        return behind, within & (behind > 0.0)
+                share = np.where(place @ other[:3] > other[3], share, 0.0)
+        return behind, np.where(behind > 0.0, share, 0.0)

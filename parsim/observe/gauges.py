@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from parsim.geometry.faces import images
 from parsim.machine.jit import kernel
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Gauge
@@ -28,14 +29,16 @@ class Gauges:
         self._names = [gauge.name for gauge in gauges]
         places = [[gauge.x, middle if gauge.y is None else gauge.y] for gauge in gauges]
         self._places, self._spacing = np.array(places).reshape(-1, 2), case.spacing
-        self._flat = case.dimensions == 2
+        self._reach, self._flat = Gauge.REACH * case.spacing, case.dimensions == 2
+        self._images, self._of = images(case, self._places, np.full(len(places), self._reach))
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`."""
         if not self._names:
             return []
-        p, top = s.domain.particles, np.full(len(self._names), -np.inf)
-        levels(s.near.fluid, p.surface, p.place, self._places, Gauge.REACH * self._spacing, self._flat, top)
+        p, top, found = s.domain.particles, np.full(len(self._names), -np.inf), np.full(len(self._of), -np.inf)
+        levels(s.near.fluid, p.surface, p.place, self._images, self._reach, self._flat, found)
+        np.maximum.at(top, self._of, found)
         top = s.domain.max(*top)
         level = np.where(np.isfinite(top), top + 0.5 * self._spacing, np.nan)
         return [

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.case.scales import scales
+from parsim.geometry.faces import images
 from parsim.observe.observer import columns
 from parsim.observe.sensors import Gauge, Levelling
 from parsim.particles.state import DETACHED
@@ -33,6 +34,7 @@ class Levels:
         self._places = np.concatenate([np.zeros((0, 2)), *parts])
         self._distance = np.concatenate([np.zeros(0), *far])
         self._spacing, self._reach, self._flat = case.spacing, Gauge.REACH * case.spacing, case.dimensions == 2
+        self._images, self._of = images(case, self._places, np.full(len(self._places), self._reach))
         self._head, self._unit = case.water.density * -case.gravity[2], scales(case).length
 
     def rows(self, s: Simulation) -> list[list[Any]]:
@@ -44,12 +46,12 @@ class Levels:
         wet = s.near.fluid[p.surface[s.near.fluid] < DETACHED]
         wet = wet[np.argsort(p.x[wet], kind="stable")]
         along = p.x[wet]
-        for k, (x, y) in enumerate(self._places):
+        for k, (x, y) in zip(self._of.tolist(), self._images, strict=True):
             first, last = np.searchsorted(along, (x - self._reach, x + self._reach))
             here = wet[first:last]
             across = 0.0 if self._flat else p.y[here] - y
             here = here[(p.x[here] - x) ** 2 + across**2 < self._reach**2]
-            top[k] = p.z[here].max(initial=-np.inf)
+            top[k] = max(top[k], p.z[here].max(initial=-np.inf))
             values.append(np.stack([p.z[here] + p.p[here] / self._head, np.ones(here.size)], axis=1))
             index.append(np.full(here.size, k))
         top = np.array(s.domain.max(*top))

@@ -67,16 +67,17 @@ class Peaks:
         load[..., 3] -= self._foot[:, None] * load[..., 1]
         load[..., 4] += self._foot[:, None] * load[..., 0]
         self._span += s.dt
-        self._impulse += load * s.dt
-        np.minimum(self._least, load, out=self._least)
-        np.maximum(self._largest, load, out=self._largest)
+        # nan of those that have left: what acted before in the same row is told all the same
+        self._impulse += np.nan_to_num(load) * s.dt
+        np.fmin(self._least, load, out=self._least)
+        np.fmax(self._largest, load, out=self._largest)
 
     def rows(self, s: Simulation) -> list[list[Any]]:
         """See `Observer`; begins anew."""
         if self._span == 0.0:
             return []
         parts = self._impulse / self._span, self._least, self._largest, self._impulse
-        every = np.concatenate(parts, axis=-1).tolist()
+        every = np.where(np.isfinite(np.tile(self._least, 4)), np.concatenate(parts, axis=-1), np.nan).tolist()
         found = [
             [sensor, s.bodies.names[k], kind, self._span, *row]
             for (sensor, k), both in zip(self._seen, every, strict=True)

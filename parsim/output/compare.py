@@ -166,7 +166,8 @@ def _compare_fields(ledger, where, a, b):
         if field not in a or field not in b:
             ledger.add(where, field, a["step"], "all", "only in one of them")
         else:
-            ledger.arrays(where, field, *(np.atleast_1d(frame[field]) for frame in (a, b)), step, item)
+            name = item if isinstance(a[field], np.ndarray) else lambda _: "the frame itself"
+            ledger.arrays(where, field, *(np.atleast_1d(frame[field]) for frame in (a, b)), step, name)
 
 
 def _compare_series(ledger, a, b):

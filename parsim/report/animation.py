@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 MOST_FRAMES, SECONDS, SLOWEST, FASTEST = 100, 6.0, 5, 20
 DOTS, COLOURS = 90, 96
+LARGEST = 2000  # dots along a side
 
 
 def chosen(count: int) -> list[int]:
@@ -51,7 +52,7 @@ def _spatial(run, gallery, frame):
     scene = load(run, frame)
     extent = OBLIQUE.extent(scene)
     height = 8 * (extent[3] - extent[2]) / (extent[1] - extent[0])
-    drawn = Figure(figsize=(8, height), dpi=DOTS)
+    drawn = Figure(figsize=(8, height))
     axes = drawn.add_axes((0, 0, 1, 1))
     show(axes, gallery, scene, frame, OBLIQUE)
     axes.text(0.03, 0.94, f"t = {scene.time:.2f} s", transform=axes.transAxes, fontsize=13)
@@ -62,15 +63,14 @@ def _plane(run, frames):
     fastest = max(plane.scale(run.water(frame), "speed") for frame in frames)
 
     def draw(run, gallery, frame):
-        drawn = plane.snapshot(run, frame, ("speed",), fastest)
-        drawn.set_dpi(DOTS)
-        return drawn
+        return plane.snapshot(run, frame, ("speed",), fastest)
 
     return draw
 
 
 def _pixels(figure):
     """The figure as bytes (rows, columns, 3), both even, as the encoder wants them."""
+    figure.set_dpi(min(DOTS, LARGEST / max(figure.get_size_inches())))
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     picture = np.asarray(canvas.buffer_rgba())[..., :3]

@@ -35,6 +35,12 @@ def wet(run: Run) -> bool:
     return run.case.get("water", {}).get("scheme", {}).get("kind") != "none"
 
 
+def wall_time(run: Run) -> float:
+    """Wall time, s, of all pieces of a run that have told theirs."""
+    pieces = run.info.get("pieces") or [run.info]
+    return sum(piece.get("wall_s", 0.0) for piece in pieces)
+
+
 def percent(share: float) -> str:
     """A share with as many digits as show it."""
     return f"{100 * share:.2g} %"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.case.model import Body
+from parsim.errors import InputError
 from parsim.report.curves import INK, LINES, figure, name_ends
 from parsim.report.measures import MANY, asked, columns, published, wet
 from parsim.report.page import section, table
@@ -104,6 +105,14 @@ def _shape(body):
     return Body.model_validate(body).shape
 
 
+def _if_known(draught, *given):
+    """A draught, None where the file of the body's mesh is not here, as on another machine."""
+    try:
+        return draught(*given)
+    except InputError:
+        return None
+
+
 def told(run: Run) -> str:
     """A table with a row for each body that is free: draught, places at `report.places`, largest x; of many bodies with
     a row for each of these."""
@@ -114,7 +123,8 @@ def told(run: Run) -> str:
             continue
         places = [at_time(track, "x", time) for time in times]
         best = largest_x(track, end) or (None, None)
-        rows.append((name, draught(run, name, track), archimedes_draught(run, name), *places, *best))
+        draughts = _if_known(draught, run, name, track), _if_known(archimedes_draught, run, name)
+        rows.append((name, *draughts, *places, *best))
     titles = (
         "body",
         "draught before release (m)",

@@ -23,7 +23,7 @@ def parts(page: Page) -> str:
             "front",
             front(page.run),
             "Curve of the front's position over time.",
-            "Front of the connected water; it has arrived when two spacings from the end wall (black).",
+            f"Front of the connected water; it has arrived when two spacings from the end {end(page.run)} (black).",
         ),
     )
 
@@ -31,7 +31,13 @@ def parts(page: Page) -> str:
 def lines(run: Run) -> list[str]:
     """When it arrived, for the summary."""
     arrival = front_arrival(run)
-    return [] if arrival is None else [f"The front reached the end wall at {arrival:.3f} s."]
+    return [] if arrival is None else [f"The front reached the end {end(run)} at {arrival:.3f} s."]
+
+
+def end(run: Run) -> str:
+    """What stands at the downstream end of the box, in a word."""
+    side = run.case.get("box", {}).get("faces", {}).get("x_max", "wall")
+    return "wall" if (side if isinstance(side, str) else side["kind"]) == "wall" else "of the box"
 
 
 def front_arrival(run: Run) -> float | None:

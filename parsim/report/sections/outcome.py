@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from parsim.report.measures import wall_time
 from parsim.report.page import listing, section
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def lines(run: Run) -> list[str]:
     told = [f"Status: {info.get('status', 'unknown')}."]
     if "steps" in info and "time" in info:
         told.append(
-            f"Simulated to {info['time']:.4g} s in {info['steps']} steps: {info.get('wall_s', 0):.4g} s of "
+            f"Simulated to {info['time']:.4g} s in {info['steps']} steps: {wall_time(run):.4g} s of "
             f"wall time on {info.get('ranks', '?')} ranks x {info.get('threads', '?')} threads."
         )
     if particles := info.get("particles"):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from parsim.report.curves import FAINT, figure
+from parsim.report.measures import wall_time
 from parsim.report.page import section, table
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from parsim.output.reader import Run
     from parsim.report.build import Page
 
-LIMIT_NAMES = {"wall_s": "wall time (s)", "steps": "steps", "ranks": "ranks", "threads": "threads per rank"}
+LIMIT_NAMES = {"steps": "steps", "ranks": "ranks", "threads": "threads per rank"}
 
 
 def parts(page: Page) -> str:
@@ -27,18 +28,23 @@ def parts(page: Page) -> str:
             "phases",
             phases(page.run),
             "Bars: seconds in each phase of the solver.",
-            "Wall time by phase of the solver, with shares.",
+            "Wall time by phase of the solver, with shares"
+            + " of the last piece" * (len(page.run.info.get("pieces", ())) > 1)
+            + ".",
         ),
     )
 
 
 def speed(run: Run) -> list[tuple[str, Any]]:
     """Rates and times as rows."""
-    info = run.info
-    rows = [(LIMIT_NAMES[key], info[key]) for key in LIMIT_NAMES if key in info]
-    rows += [(key.replace("_", " "), value) for key, value in _flat(info.get("rate") or {})]
-    if info.get("wall_s") and info.get("time"):
-        rows.append(("wall seconds per simulated second", info["wall_s"] / info["time"]))
+    info, spent, pieces = run.info, wall_time(run), len(run.info.get("pieces", ()))
+    last = f", the last of {pieces} pieces" if pieces > 1 else ""
+    rows = [("wall time (s)", spent)] if spent else []
+    rows += [(LIMIT_NAMES[key], info[key]) for key in LIMIT_NAMES if key in info]
+    rows += [(key.replace("_", " ") + last, value) for key, value in _flat(info.get("rate") or {})]
+    lasted = info.get("time", 0.0) + run.case.get("run", {}).get("settle", 0.0)
+    if spent and lasted > 0.0:
+        rows.append(("wall seconds per simulated second", spent / lasted))
     return rows
 
 
