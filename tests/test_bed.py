@@ -236,7 +236,7 @@ def test_an_inlet_over_a_bed_gives_water_above_it_only(tmp_path):
     inlet = Openings(case, case.layers, bodies).inlet
     ground = bed_of(case).heights.at(np.full(inlet._y.size, 0.05), inlet._y)
     assert (inlet.solid == (inlet._z < ground)).mean() > 0.98 and not inlet.awake[inlet.solid].any()
-    inlet.follow(0.7, 1.0, 0.1)
+    inlet.follow(0.7, 0.0, 1.0, 0.1)
     assert inlet.speed.sum() * 0.01 == pytest.approx(0.1) and inlet.speed[inlet._z < ground - 0.01].max() == 0.0
 
 

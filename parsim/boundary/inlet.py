@@ -3,8 +3,8 @@
 A *place* is a site of the lattice in y and z. Its k-th particle stands at x = x_in + travel - (k + 1/2) l0, whatever
 was before: position, moment and id of each follow from the travel of its place, which is all that is kept, and no
 particle enters before the last has left. To the water, samples before the side are a boundary that moves with it: their
-pressure is that of the water that they see. A wave from inside shows in the level there; the discharge can give way to
-it by so much that none runs back, and is what is asked for on the average.
+pressure is that of the water that they see. A wave from inside shows in level and speed there; the discharge can give
+way to it by so much that none runs back, and is what is asked for on the average.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from parsim.domain.slab import Slab
 
 _LAG = 2.0  # sqrt(H / g), of the level that the inlet follows
-_TRAVELS = 5.0  # H / V, over which the level is averaged that waves are waves on
+_TRAVELS = 5.0  # H / V, over which level and speed are averaged that waves are waves on
+_AHEAD = 1.0  # depths that the water looked at is before the inlet: what is seen there comes so much later
 _SLACK = 0.25  # spacings by which the level must pass the middle of a row to wake it or send it to sleep
 
 
@@ -53,7 +54,7 @@ class Inlet:
         self._lag = _LAG * np.sqrt(case.depth / -case.gravity[2])
         self._id = sum(lattice_of(case, fill).size for fill in case.water.fill)
         self.level, self.discharge = level_at_start(case), 0.0
-        self._mean = self.level
+        self._mean, self._drift, self._gone, self._owed = self.level, math.nan, 0.0, 0.0
         count = self._y.size
         self.travel, self.speed = np.zeros(count), np.zeros(count)
         self.first, self.awake = np.zeros(count, np.int64), np.zeros(count, bool)
@@ -64,29 +65,41 @@ class Inlet:
         self._bottom = self._floor + l0 * np.repeat(low, up.size)
         self._at, self._of, self._behind = np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
         self._wake()
-        self.follow(math.nan, case.start, 0.0)
+        self.follow(math.nan, math.nan, case.start, 0.0)
 
-    def follow(self, level: float, time: float, dt: float) -> None:
-        """Follow the `level`, m, that was seen inside over dt, s, and set the speeds of the step at `time`, s."""
+    def follow(self, level: float, speed: float, time: float, dt: float) -> None:
+        """Follow what was seen inside over dt, s, level, m, and speed, m/s; set the speeds of the step at `time`, s."""
         if self._side.level is not None:
             self.level = at_time(self._side.level, time)
         elif np.isfinite(level):
             self.level += min(dt / self._lag, 1.0) * (level - self.level)
         self.discharge = at_time(self._side.discharge, time) if time >= 0.0 else 0.0
         if self._side.absorb > 0.0 and time >= 0.0 and np.isfinite(level):
-            self._give_way(level, dt)
+            self._give_way(level, speed, dt)
         self._flow()
 
-    def _give_way(self, level, dt):
-        """Let a wave out: dV = -sqrt(g / h) dh, with the depth over what stands there."""
+    def _give_way(self, level, speed, dt):
+        """Let a wave out: dV = -sqrt(g / h) dh, with the depth over what stands there.
+
+        Of what is seen, only the wave that runs out counts, by the invariant V - 2 sqrt(g h), when it has come here: an
+        answer to the inlet's own waves would feed them. What would have to go out through the inlet is owed, and does
+        not come in later.
+        """
         over, gravity = self._mean - self._bottom.reshape(self._shape)[:, 0], -self._case.gravity[2]
         wet = over > self._case.spacing
         depth = float(over[wet].mean()) if wet.any() else self._case.spacing
         area = depth * self._case.width * max(float(wet.mean()), 1.0 / wet.size)
-        lag = _TRAVELS * depth / max(self.discharge / area, 0.1 * math.sqrt(gravity * depth))
+        wave, drift = math.sqrt(gravity * depth), speed if math.isnan(self._drift) else self._drift
+        lag = _TRAVELS * depth / max(self.discharge / area, 0.1 * wave)
         self._mean += min(dt / lag, 1.0) * (level - self._mean)
-        gone = self._side.absorb * math.sqrt(gravity / depth) * (level - self._mean) * area
-        self.discharge = max(self.discharge - gone, 0.0)  # nothing goes out here
+        self._drift = drift + min(dt / lag, 1.0) * (speed - drift)
+        out = 0.5 * (wave / depth * (level - self._mean) - (speed - self._drift)) * area
+        travel = _AHEAD * depth / max(wave - speed, 0.1 * wave)
+        self._gone += min(dt / travel, 1.0) * (self._side.absorb * out - self._gone)
+        left = self.discharge - self._gone
+        paid = min(self._owed / lag, max(left, 0.0))
+        self._owed += dt * (max(-left, 0.0) - paid)
+        self.discharge = max(left, 0.0) - paid  # nothing goes out here
 
     def _flow(self):
         """Set the speeds, by the discharge. Floes weigh what they displace: where one comes in, water is left out."""
@@ -216,12 +229,14 @@ class Inlet:
             "first": self.first.copy(),
             "awake": self.awake.astype(np.int64),
             "covered": self.covered.astype(np.int64),
-            "inlet": np.array([self.level, self.discharge, self.displaced, self._mean]),
+            "inlet": np.array([self.level, self.discharge, self.displaced]),
+            "waves": np.array([self._mean, self._drift, self._gone, self._owed]),
         }
 
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Go on from what `kept` returned."""
         self.travel, self.first = (np.array(kept[name]) for name in ("travel", "first"))
         self.awake, self.covered = np.array(kept["awake"], bool), np.array(kept["covered"], bool)
-        self.level, self.discharge, self.displaced, self._mean = map(float, kept["inlet"])
+        self.level, self.discharge, self.displaced = map(float, kept["inlet"])
+        self._mean, self._drift, self._gone, self._owed = map(float, kept["waves"])
         self._flow()

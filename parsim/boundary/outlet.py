@@ -16,6 +16,7 @@ import numpy as np
 
 from parsim.case.course import at_time
 from parsim.case.fill import water_at
+from parsim.case.openings import section_of
 from parsim.geometry.faces import walled_sides
 from parsim.particles.state import FLUID
 
@@ -43,7 +44,8 @@ class Outlet:
         self.end = self.x + layers * case.spacing
         self._length = case.box.size[0]
         self._floor, self._gravity = case.box.min[2], -case.gravity[2]
-        self._width, self._beside = case.width, sum(axis == 1 for axis, _, _ in walled_sides(case))
+        self._section = section_of(case, self.x - 0.5 * case.spacing)
+        self._beside = sum(axis == 1 for axis, _, _ in walled_sides(case))
         self._head = case.water.density * self._gravity
         self.discharge = self._mean = self._edge = math.nan
         self._gain = self._rise = 0.0
@@ -55,26 +57,32 @@ class Outlet:
         self._near = self._at = np.zeros(0, np.int64)
         self._speed, self._true, self._real = np.zeros(0), np.zeros(0, bool), slice(0, 0)
 
-    def follow(self, depth: float, speed: float, edge: float, time: float, dt: float) -> None:
-        """Set the level of the next step by what was seen inside over dt, s: mean depth, m, and speed, m/s.
+    def follow(self, level: float, speed: float, edge: float, time: float, dt: float) -> None:
+        """Set the level of the next step by what was seen inside over dt, s: mean level, m, and speed, m/s.
 
         edge, m/s: the mean speed right before the side.
         """
-        depth = max(depth, self._case.spacing) if math.isfinite(depth) else self._case.spacing
-        speed = speed if math.isfinite(speed) else 0.0
-        wave, flow = math.sqrt(self._gravity * depth), speed * depth * self._width
+        area, _, _ = self._section(level if math.isfinite(level) else self._floor)
+        depth, speed = max(self._depth(level), self._case.spacing), speed if math.isfinite(speed) else 0.0
+        wave, flow = math.sqrt(self._gravity * depth), speed * area
         if math.isnan(self._mean):
             self._mean, self.discharge = speed, flow
         lag = _TRAVELS * depth / max(abs(speed), 0.1 * wave)
         self.discharge += min(dt / lag, 1.0) * (flow - self.discharge)
         self._mean += min(dt * wave / (_SWINGS * self._length), 1.0) * (speed - self._mean)
         self._pass_on(edge, min(dt / (_LAG * math.sqrt(depth / self._gravity)), 1.0))
-        asked = max(self._asked(time) - self._floor, 0.0)
+        level = self._asked(time)
+        asked = self._depth(level)
         kept = 0.25 * (speed + 2.0 * wave - self._mean) + 0.5 * math.sqrt(self._gravity * asked)
         rise = self._side.absorb * (kept * kept / self._gravity - asked)
         travel = _AHEAD * depth / (wave + max(speed, 0.0))
         self._rise += min(dt / travel, 1.0) * (rise - self._rise)
-        self.level = max(self._floor + asked + self._rise, self._floor)
+        self.level = max(level + self._rise, self._floor)
+
+    def _depth(self, level):
+        """Mean depth, m, of the water before the side over what stands there."""
+        area, width, _ = self._section(level if math.isfinite(level) else self._floor)
+        return area / width if width > 0.0 else 0.0
 
     @property
     def speed(self) -> float:
@@ -98,7 +106,7 @@ class Outlet:
         flow = max(self.discharge, 0.0)
         if side.rating is not None:
             return at_time(side.rating, flow)
-        return self._floor + normal_depth(flow, side.normal.manning, side.normal.slope, self._width, self._beside)
+        return normal_level(flow, side.normal.manning, side.normal.slope, self._section, self._beside, self._floor)
 
     def find(self, p: Particles, own: slice) -> None:
         """Note which of this rank's particles `p` may be in the zone before the lists are built anew."""
@@ -136,20 +144,31 @@ class Outlet:
         self.removed = int(removed)
 
 
-def normal_depth(discharge: float, manning: float, slope: float, width: float, walls: int) -> float:
-    """Depth, m, of uniform flow by Manning in a rectangle of a width, m, with so many walls beside."""
-    wide = (manning * discharge / (width * math.sqrt(slope))) ** 0.6
-    if not walls or wide == 0.0:
-        return wide
+def normal_level(
+    discharge: float,
+    manning: float,
+    slope: float,
+    section: Callable[[float], tuple[float, float, float]],
+    walls: int,
+    floor: float,
+) -> float:
+    """Level, m, of uniform flow by Manning in a section, see `case.openings.section_of`, with so many walls beside.
 
-    def flow(depth):
-        area = width * depth
-        return area * (area / (width + walls * depth)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
+    The wetted perimeter is the width of the surface and the mean depth at each wall.
+    """
+    if discharge <= 0.0:
+        return floor
 
-    low, high = wide, 2.0 * wide
-    while flow(high) < discharge:
+    def flow(level: float) -> float:
+        area, width, _ = section(level)
+        if area <= 0.0:
+            return 0.0
+        return area * (area / (width + walls * area / width)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
+
+    low, high = 0.0, (manning * discharge / (section(math.inf)[1] * math.sqrt(slope))) ** 0.6
+    while flow(floor + high) < discharge:
         low, high = high, 2.0 * high
     while high - low > 1e-9 * high:
         depth = 0.5 * (low + high)
-        low, high = (depth, high) if flow(depth) < discharge else (low, depth)
-    return 0.5 * (low + high)
+        low, high = (depth, high) if flow(floor + depth) < discharge else (low, depth)
+    return floor + 0.5 * (low + high)

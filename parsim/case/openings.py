@@ -93,22 +93,22 @@ def level_at_start(case):
     return standing[1] if standing else case.box.min[2]
 
 
-def inlet_of(case):
-    """The function of a level, m, that gives what an inlet is of the water that comes in.
+def section_of(case, x):
+    """The function of a level, m, that gives the section of the water at x, m, over what is fixed and stands there.
 
-    Its area, m2 (2D: m), the width of its surface, m (2D: 1), and its greatest depth, m, over what is fixed and stands
-    there, in columns a spacing wide, or wider in a large box.
+    Its area, m2 (2D: m), the width of its surface, m (2D: 1), and its greatest depth, m, in columns a spacing wide, or
+    wider in a large box.
     """
-    low, l0 = case.box.min, case.spacing
+    low = case.box.min
     y, z = (low[a] + (np.arange(n) + 0.5) * case.box.size[a] / n for a, n in ((a, _columns(case, a)) for a in (1, 2)))
-    points = np.stack([part.ravel() for part in np.meshgrid(low[0] + 0.5 * l0, y, z, indexing="ij")], axis=1)
+    points = np.stack([part.ravel() for part in np.meshgrid(x, y, z, indexing="ij")], axis=1)
     solid = np.zeros(len(points), bool)
     for place in (places.of_body(body) for body in placed(case) if body.fixed):
         if place.low()[0] <= points[0, 0] <= place.high()[0]:
             solid |= places.clearance(place, points) <= 0.0
     stands = np.minimum.accumulate(solid.reshape(y.size, z.size), axis=1).mean(axis=1) * case.box.size[2]
 
-    @functools.lru_cache
+    @functools.lru_cache(maxsize=16)
     def at(level):
         depth = np.maximum(level - low[2] - stands, 0.0)
         return float(depth.mean()) * case.width, float((depth > 0.0).mean()) * case.width, float(depth.max())
@@ -116,8 +116,13 @@ def inlet_of(case):
     return at
 
 
+def inlet_of(case):
+    """The section of the water that comes in: see `section_of`."""
+    return section_of(case, case.box.min[0] + 0.5 * case.spacing)
+
+
 def _columns(case, axis):
-    """How many columns an inlet is looked at in across, or how many rows up."""
+    """How many columns a section is looked at in across, or how many rows up."""
     return 1 if axis not in case.axes else min(max(round(case.box.size[axis] / case.spacing), 1), _MOST)
 
 

@@ -38,7 +38,7 @@ class Openings:
         self.inlet = Inlet(case, layers, _fixed(bodies)) if faces.x_min.kind == "inlet" else None
         self.outlet = Outlet(case, layers) if faces.x_max.kind == "outlet" else None
         self.passage = Passage(case, bodies, self.inlet, self.outlet)
-        self._depth, self._floor, self._spacing = case.depth, case.box.min[2], case.spacing
+        self._depth, self._spacing = case.depth, case.spacing
         self._head = case.water.density * -case.gravity[2]
         self._units = np.array([scale.length, scale.length / scale.time, 1.0])
         self._back = np.zeros(2)
@@ -75,9 +75,9 @@ class Openings:
             level, speed = sums[:, 0] / sums[:, 2], sums[:, 1] / sums[:, 2]
         self._back += sums[_BACK, [0, 2]]
         if self.inlet:
-            self.inlet.follow(float(level[_INSIDE]), time, dt)
+            self.inlet.follow(float(level[_INSIDE]), float(speed[_INSIDE]), time, dt)
         if self.outlet:
-            seen = float(level[_OUTSIDE]) - self._floor, float(speed[_OUTSIDE]), float(speed[_BEFORE])
+            seen = float(level[_OUTSIDE]), float(speed[_OUTSIDE]), float(speed[_BEFORE])
             self.outlet.follow(*seen, time, dt)
         self.passage.advance(time, dt)
 

@@ -24,6 +24,6 @@ class OutletSide(SideTable):
         None, description='height of the water there, m: a number, rows of [time, s, value] or {file = "h.csv"}'
     )
     rating: Rows | None = Field(None, description="rows of [discharge, m3/s (2D: m2/s), level, m], both growing")
-    normal: NormalDepth | None = Field(None, description="the depth of uniform flow over the floor of the box")
+    normal: NormalDepth | None = Field(None, description="the depth of uniform flow over what stands there")
     absorb: Share = Field(1.0, description="share of a wave from inside that is let out; the rest comes back")
     continues = True
