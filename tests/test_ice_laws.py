@@ -201,3 +201,9 @@ def test_limits_are_judged_by_the_dimensions():
     """By area few are left of many in a plane, where floes cover a length, and next to none in 3D."""
     law = Lognormal(kind="lognormal", median=0.08, sigma=2.5, min=0.06, max=0.1, weight="area")
     assert list(law.faults(3)) and not list(law.faults(2))
+
+
+def test_corners_far_from_the_origin_are_about_their_centre_too():
+    near = ((0.0, 0.0), (0.3, 0.02), (0.31, 0.2), (0.05, 0.29))
+    far = tuple((x + 305600.0, y + 5106300.0) for x, y in near)
+    assert centred(far) == pytest.approx(centred(near), abs=1e-8)

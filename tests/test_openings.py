@@ -219,8 +219,7 @@ def test_an_inlet_that_absorbs_gives_way_to_a_wave():
 def test_what_an_absorbing_inlet_could_not_let_out_does_not_come_in_later():
     inlet = simulation(reach({"absorb": 1.0, "discharge": 0.005})).solids.openings.inlet
     total, wave, dt = 0.0, math.sqrt(9.81 / 0.1), 1e-3
-    for k in range(30000):
-        rise = 0.02 * math.sin(2e-3 * math.pi * k)
+    for rise in 0.02 * np.sin(2e-3 * math.pi * np.arange(30000)):
         inlet.follow(0.1 + rise, 0.05 - wave * rise, 1.0, dt)
         assert inlet.discharge >= 0.0, "nothing goes out"
         total += inlet.discharge * dt
@@ -295,6 +294,7 @@ WRONG = [
     ({"x_max": {"kind": "outlet", "rating": [[0.1, 0.1], [0.1, 0.2]]}}, "rating: discharge 0.1 after 0.1: must grow"),
     ({"x_max": {"kind": "outlet", "normal": {"manning": 0.02}}}, "x_max.normal.slope: missing"),
     ({"x_min": {"kind": "inlet"}}, "x_min.discharge: missing"),
+    ({"x_max": {"kind": "outlet", "normal": {"manning": 0.1, "slope": 1e-6}}}, "normal: uniform flow of what comes in"),
 ]  # fmt: skip
 
 
@@ -305,6 +305,13 @@ def test_a_wrong_opening_is_told(faces, said):
     with pytest.raises(InputError) as error:
         parse(given)
     assert said in str(error.value)
+
+
+def test_what_is_doubtful_in_openings_is_told():
+    short = reach(outlet={"kind": "outlet", "rating": [[0.0, 0.05], [0.03, 0.1]]})
+    assert any("rating: ends at 0.03, and up to 0.04 come in" in text for text in parse(short).warnings())
+    fast = reach({"discharge": 0.15, "profile": {"kind": "linear"}})
+    assert any("x_min.profile: comes in at up to 3 m/s, more than" in text for text in parse(fast).warnings())
 
 
 def test_an_opening_without_gravity_is_told():

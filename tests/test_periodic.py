@@ -83,3 +83,12 @@ def test_sides_that_repeat_too_soon_are_refused(axis):
             continue
         with pytest.raises(InputError, match=rf"{axis} repeats after 0.03 m; must be 0.035 m or more"):
             check_ranks(case, 1)
+
+
+def test_a_body_longer_than_the_period_is_refused():
+    given = tank(0.4, 0.4, 0.02, periodic="x") | {"materials": WOOD}
+    given["water"] = {}
+    bar = {"name": "a", "shape": {"size": [0.5, 1.0, 0.04]}, "density": 500.0, "material": "wood",
+           "position": [0.2, 0.5, 0.2]}  # fmt: skip
+    with pytest.raises(InputError, match="reaches over 0.5 m along x, where the box repeats after 0.4 m; must be less"):
+        parse(given | {"bodies": [bar]})

@@ -73,9 +73,12 @@ def test_a_side_that_cannot_move_so_is_told(changes, said):
 
 def test_a_side_that_nothing_rubs_is_told():
     given = plates()
-    given["water"]["friction"]["walls"] = ["z_min"]
-    for friction in (given["water"]["friction"], None):
+    rubs = given["water"]["friction"]
+    for friction in (rubs | {"walls": ["z_min"]}, rubs | {"walls": []}, None):
         given["water"] = {k: v for k, v in given["water"].items() if k != "friction"}
         given["water"] |= {"friction": friction} if friction else {}
         with pytest.raises(InputError, match="nothing feels it; water.friction is missing, or this side is not in its"):
             parse(given)
+    given["water"] = {}
+    with pytest.raises(InputError, match="nothing feels it; water.friction is missing"):
+        parse(given)

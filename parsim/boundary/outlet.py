@@ -16,7 +16,7 @@ import numpy as np
 
 from parsim.case.course import at_time
 from parsim.case.fill import water_at
-from parsim.case.openings import section_of
+from parsim.case.openings import normal_level, section_of
 from parsim.geometry.faces import walled_sides
 from parsim.particles.state import FLUID
 
@@ -142,33 +142,3 @@ class Outlet:
         *held, removed = map(float, kept["outlet"])
         self.level, self.discharge, self._mean, self._edge, self._gain, self._rise = held
         self.removed = int(removed)
-
-
-def normal_level(
-    discharge: float,
-    manning: float,
-    slope: float,
-    section: Callable[[float], tuple[float, float, float]],
-    walls: int,
-    floor: float,
-) -> float:
-    """Level, m, of uniform flow by Manning in a section, see `case.openings.section_of`, with so many walls beside.
-
-    The wetted perimeter is the width of the surface and the mean depth at each wall.
-    """
-    if discharge <= 0.0:
-        return floor
-
-    def flow(level: float) -> float:
-        area, width, _ = section(level)
-        if area <= 0.0:
-            return 0.0
-        return area * (area / (width + walls * area / width)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
-
-    low, high = 0.0, (manning * discharge / (section(math.inf)[1] * math.sqrt(slope))) ** 0.6
-    while flow(floor + high) < discharge:
-        low, high = high, 2.0 * high
-    while high - low > 1e-9 * high:
-        depth = 0.5 * (low + high)
-        low, high = (depth, high) if flow(floor + depth) < discharge else (low, depth)
-    return floor + 0.5 * (low + high)

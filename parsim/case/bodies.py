@@ -54,6 +54,11 @@ def _body(case, body):
         )
     if body.fixed and any((*body.velocity, *body.spin)):
         yield f"fixed = true: velocity = {list(body.velocity)} and spin = {list(body.spin)} must then be zero"
+    if body.released is not None and any((*body.velocity, *body.spin)):
+        yield (
+            f"released = {body.released!r}: velocity = {list(body.velocity)} and spin = {list(body.spin)} must then be "
+            "zero; it begins at rest"
+        )
     yield from body.shape.faults(case.dimensions == 2)
     if case.dimensions == 2:
         yield from _planar(body)
@@ -83,6 +88,12 @@ def _outside(case, body):
                 f"half a spacing off it: it reaches from {name} = {low[axis]:.6g} to {high[axis]:.6g}"
             )
             continue
+        if around[axis] and high[axis] - low[axis] > most - least + TOUCH:
+            yield (
+                f"{body.shape.told()}: reaches over {high[axis] - low[axis]:.6g} m along {name}, where the box repeats "
+                f"after {most - least:.6g} m; must be less"
+            )
+            continue
         if around[axis]:
             low[axis] = high[axis] = body.position[axis]
         if low[axis] < least - TOUCH or high[axis] > most + TOUCH:
@@ -99,6 +110,11 @@ def speeds(case):
     found = [(f"bodies.{body.name}.velocity, spin", _fastest(case, body)) for body in case.bodies]
     if case.gate:
         found.append(("gate.speed", case.gate.speed))
+    known = {body.name: body for body in case.bodies if body.position[2] != "float"}
+    for i, joint in enumerate(case.joints):
+        if joint.DRIVES and (body := known.get(joint.body)):
+            radius = body.shape.radius(case.dimensions == 2)
+            found.append((f"joints.{i}", joint.fastest(np.array(body.position, float), radius)))
     return [
         f"{key}: {speed:.6g} m/s; must be less than the speed of sound of the model, {case.sound_speed:.6g} m/s, "
         "which is water.scheme.sound times water.speed"

@@ -67,7 +67,7 @@ def doubts(case):
         + case.water.scheme.doubts()
         + case.contacts.law.doubts(case.dimensions == 2)
         + fills.doubts(case)
-        + [*friction.doubts(case), *bed.doubts(case)]
+        + [*friction.doubts(case), *bed.doubts(case), *openings.doubts(case)]
     )
 
 
@@ -99,7 +99,11 @@ def _all_floated(case, given):
     """(`given` bodies, those that float at their heights, messages)."""
     floated, faults = [], []
     for body in given:
-        shape = body.shape.completed()
+        try:
+            shape = body.shape.completed()
+        except InputError as error:
+            faults += [f"bodies.{body.name}.shape: {text}" for text in error.messages]
+            continue
         body = body if shape is body.shape else body.model_copy(update={"shape": shape})
         try:
             floated.append(_floated(case, body) if body.position[2] == "float" else body)

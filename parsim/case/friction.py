@@ -41,7 +41,7 @@ def faults(case):
     own = [n for n, m in case.materials.items() if m.roughness is not None]
     if not case.water.scheme.WET:
         given = [f"water.{name}" for name in ("friction", "eddies") if getattr(case.water, name) is not None]
-        return [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
+        return out + [f"{name}: there is no water" for name in given + [f"materials.{name}.roughness" for name in own]]
     walls = names_of_walls(case)
     if case.water.eddies is not None and case.water.eddies.kind == "mixing_length" and not walls:
         out.append('water.eddies.kind = "mixing_length": there is no wall to be at a distance from; use "smagorinsky"')
@@ -70,7 +70,7 @@ def _sliding(case):
             yield f"{key}: {name[0]} must be 0; a side moves in its own plane"
         elif case.dimensions == 2 and velocity[1] != 0.0:
             yield f"{key}: y must be 0 in a 2D case"
-        elif friction is None or name not in (friction.walls or walls):
+        elif friction is None or name not in (walls if friction.walls is None else friction.walls):
             yield f"{key}: nothing feels it; water.friction is missing, or this side is not in its walls"
         elif free:
             yield f"{key}: bodies.{free[0]}: must be fixed; contacts do not feel that a side moves"

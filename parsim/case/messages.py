@@ -27,6 +27,7 @@ _ALLOWED = {
     "less_than": "must be less than {lt}",
     "less_than_equal": "must be at most {le}",
     "too_long": "must have {max_length} entries",
+    "too_short": "must have at least {min_length} entries",
     "string_pattern_mismatch": "must be a letter followed by letters, digits, _ or - (64 at most)",
 }
 

@@ -2,6 +2,7 @@
 
 import functools
 import itertools
+import math
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from parsim.case import places
 from parsim.case.bodies import placed
 from parsim.case.course import at_time, highest, least, times_of, wrong_course
 from parsim.case.fill import water_at
-from parsim.geometry.faces import SIDES
+from parsim.geometry.faces import SIDES, walled_sides
 from parsim.solid.shapes.bed import BedShape
 
 _PLACE = {"inlet": "x_min", "outlet": "x_max"}
@@ -57,15 +58,39 @@ def _inlet(case):
         yield from (f"profile.{text}" for text in wrong)
 
 
-def _fast(case):
-    """Whether the water comes in faster than is expected, at any time."""
-    side, inlet, fastest = case.box.faces.x_min, inlet_of(case), (0.0, 0.0, 0.0)
+def doubts(case):
+    """What is allowed but doubtful in inlet and outlet: messages."""
+    come, gone = case.box.faces.x_min, case.box.faces.x_max
+    most = highest(come.discharge) if come.kind == "inlet" else 0.0
+    if come.kind == "inlet" and come.profile is not None:
+        mean, _, _, depth = _fastest(case)
+        fast = mean * float(np.max(come.profile.at(np.linspace(0.0, 1.0, 101) * depth, depth)))
+        if fast > case.speed:
+            yield (
+                f"box.faces.x_min.profile: comes in at up to {fast:.4g} m/s, more than the largest expected speed, "
+                f"{case.speed:.4g} m/s; give water.speed"
+            )
+    if gone.kind == "outlet" and gone.rating is not None and gone.rating[-1][0] < most:
+        yield (
+            f"box.faces.x_max.rating: ends at {gone.rating[-1][0]:g}, and up to {most:g} come in; beyond its end the "
+            "level stays what it is there"
+        )
+
+
+def _fastest(case):
+    """Of the water that comes in fastest: mean speed, m/s, discharge, area, and greatest depth, m."""
+    side, inlet, fastest = case.box.faces.x_min, inlet_of(case), (0.0, 0.0, 0.0, case.spacing)
     for time in (0.0, *times_of(side.discharge, side.level)):
         level = level_at_start(case) if side.level is None else at_time(side.level, time)
-        area, discharge = inlet(level)[0], at_time(side.discharge, time)
+        (area, _, depth), discharge = inlet(level), at_time(side.discharge, time)
         if area > 0.0:  # else the box is told of elsewhere
-            fastest = max(fastest, (discharge / area, discharge, area))
-    mean, discharge, area = fastest
+            fastest = max(fastest, (discharge / area, discharge, area, depth))
+    return fastest
+
+
+def _fast(case):
+    """Whether the water comes in faster than is expected, at any time."""
+    mean, discharge, area, _ = _fastest(case)
     if mean > case.speed:
         yield (
             f"discharge = {discharge:g}: is {mean:.4g} m/s through {area:.4g} m2, more than the largest expected "
@@ -121,6 +146,29 @@ def inlet_of(case):
     return section_of(case, case.box.min[0] + 0.5 * case.spacing)
 
 
+def normal_level(discharge, manning, slope, section, walls, floor):
+    """Level, m, of uniform flow by Manning in a section, see `section_of`, with so many walls beside.
+
+    The wetted perimeter is the width of the surface and the mean depth at each wall.
+    """
+    if discharge <= 0.0:
+        return floor
+
+    def flow(level):
+        area, width, _ = section(level)
+        if area <= 0.0:
+            return 0.0
+        return area * (area / (width + walls * area / width)) ** (2.0 / 3.0) * math.sqrt(slope) / manning
+
+    low, high = 0.0, (manning * discharge / (section(math.inf)[1] * math.sqrt(slope))) ** 0.6
+    while flow(floor + high) < discharge:
+        low, high = high, 2.0 * high
+    while high - low > 1e-9 * high:
+        depth = 0.5 * (low + high)
+        low, high = (depth, high) if flow(floor + depth) < discharge else (low, depth)
+    return floor + 0.5 * (low + high)
+
+
 def _columns(case, axis):
     """How many columns a section is looked at in across, or how many rows up."""
     return 1 if axis not in case.axes else min(max(round(case.box.size[axis] / case.spacing), 1), _MOST)
@@ -150,6 +198,15 @@ def _outlet(case):
         if rows[:, 1].min() <= floor:
             yield f"rating: level {rows[:, 1].min():g} m: must be above the {what}, {floor!r} m"
         yield from _over_the_top(case, "rating: level", rows[:, 1].max())
+    if side.normal is not None and case.box.faces.x_min.kind == "inlet":
+        section = section_of(case, case.box.max[0] - 0.5 * case.spacing)
+        walls, most = sum(axis == 1 for axis, _, _ in walled_sides(case)), highest(case.box.faces.x_min.discharge)
+        level = normal_level(most, side.normal.manning, side.normal.slope, section, walls, case.box.min[2])
+        if level > case.box.max[2]:
+            yield (
+                f"normal: uniform flow of what comes in, {most:g}, has its level at {level:.4g} m; must be below the "
+                f"top of the box, {case.box.max[2]!r} m"
+            )
 
 
 def _ground(case, x):

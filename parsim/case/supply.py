@@ -64,14 +64,28 @@ def _asked(case, supply):
     """The function of time, s, that gives its `rate` in the water that the case asks for, as if it never ended."""
     if supply.discharge is not None:
         return lambda time: at_time(supply.discharge, time)
-    side, inlet, start = case.box.faces.x_min, inlet_of(case), level_at_start(case)
+    side, inlet, low = case.box.faces.x_min, inlet_of(case), _lowest(case)
 
     def asked(time):
-        area, width, depth = inlet(start if side.level is None else at_time(side.level, time))
-        share = 1.0 if side.profile is None else float(side.profile.at(depth, depth))
+        area, width, depth = inlet(low if side.level is None else at_time(side.level, time))
+        share = _at_surface(case, depth)
         return supply.concentration * width * share * at_time(side.discharge, time) / area
 
     return asked
+
+
+def _at_surface(case, depth):
+    """The speed of the uppermost water that comes in, over the mean."""
+    profile = case.box.faces.x_min.profile
+    return 1.0 if profile is None else float(profile.at(max(depth - 0.5 * case.spacing, 0.0), depth))
+
+
+def _lowest(case):
+    """To what level the water at the inlet may fall, m: to that of the outlet, but not below half of its depth."""
+    start, out = level_at_start(case), case.box.faces.x_max
+    asked = [least(out.level)] if out.kind == "outlet" and out.level is not None else []
+    depth = inlet_of(case)(start)[2]
+    return max(min([start, *asked]), start - 0.5 * depth)
 
 
 def _least_level(case):
@@ -89,7 +103,8 @@ def _wrong(case, supply):
     if area <= 0.0:
         yield f'name = "{supply.name}": there is no {"spacing" if case.spacing is None else "water at the inlet"}'
         return
-    if (profile := case.box.faces.x_min.profile) is not None and [*profile.faults(depth)]:
+    profile = case.box.faces.x_min.profile
+    if profile is not None and ([*profile.faults(depth)] or _at_surface(case, depth) <= 0.0):
         yield f'name = "{supply.name}": the water has no speed at the surface; box.faces.x_min.profile is wrong'
         return
     if (supply.concentration is None) == (supply.discharge is None):

@@ -27,6 +27,10 @@ class SteadyTable(DrivingTable):
         """See `DrivingTable`."""
         return Pose(time * np.array(self.velocity), time * np.array(self.spin))
 
+    def fastest(self, centre, radius):
+        """See `DrivingTable`."""
+        return math.hypot(*self.velocity) + math.hypot(*self.spin) * radius
+
     def ways(self):
         """See `DrivingTable`."""
         yield f"velocity = {list(self.velocity)}", self.velocity, _ZERO
@@ -48,6 +52,13 @@ class ScheduleTable(DrivingTable):
         rows = np.array([(*row, *(0.0,) * (7 - len(row))) for row in near])
         x = np.array([np.interp(time, rows[:, 0], column) for column in rows[:, 1:].T])
         return Pose(x[:3], np.radians(x[3:]))
+
+    def fastest(self, centre, radius):
+        """See `DrivingTable`."""
+        rows = np.array([(*row, *(0.0,) * (7 - len(row))) for row in self.rows])
+        change, span = np.abs(np.diff(rows[:, 1:], axis=0)), np.diff(rows[:, 0])
+        moved = np.hypot.reduce(change[:, :3], axis=1) + radius * np.hypot.reduce(np.radians(change[:, 3:]), axis=1)
+        return float((moved[span > 0.0] / span[span > 0.0]).max(initial=0.0))
 
     def ways(self):
         """See `DrivingTable`."""
@@ -81,6 +92,11 @@ class SwayTable(DrivingTable):
         share = math.sin(2.0 * math.pi * self.frequency * time + phase) - math.sin(phase)
         return Pose(share * np.array(self.amplitude), share * np.radians(self.turn))
 
+    def fastest(self, centre, radius):
+        """See `DrivingTable`."""
+        most = math.hypot(*self.amplitude) + radius * math.radians(math.hypot(*self.turn))
+        return 2.0 * math.pi * self.frequency * most
+
     def ways(self):
         """See `DrivingTable`."""
         yield f"amplitude = {list(self.amplitude)}", self.amplitude, _ZERO
@@ -107,6 +123,10 @@ class SwingTable(DrivingTable):
             + along * (along @ arm) * (1.0 - math.cos(angle))
         )
         return Pose(turned - arm, angle * along)
+
+    def fastest(self, centre, radius):
+        """See `DrivingTable`."""
+        return abs(self.speed) * (float(np.linalg.norm(centre - np.array(self.pivot))) + radius)
 
     def ways(self):
         """See `DrivingTable`."""

@@ -43,6 +43,10 @@ class DrivingTable(JointTable):
         """Where it leads: of each key that says so its name, shifts (3,) and vectors of turns (3,), of any size."""
         raise NotImplementedError
 
+    def fastest(self, centre, radius):
+        """Bound of the speed, m/s, of any point of a body of this radius, m, with its centre (3,), m, at the start."""
+        raise NotImplementedError
+
     def faults(self, body, planar):
         """See `JointTable`."""
         if any((*body.velocity, *body.spin)) or body.fixed or body.released is not None:

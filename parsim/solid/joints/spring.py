@@ -31,8 +31,8 @@ class SpringTable(JointTable):
         if self.line_to is not None and math.dist(self.to, self.line_to) == 0.0:
             yield f"line_to = {list(self.line_to)}: is where the line starts; leave it out for a point"
         if planar:
-            for key, value in (("to", self.to), ("line_to", self.line_to or self.to)):
-                if value[1] != 0.5:
+            for key, value in (("to", self.to), ("line_to", self.line_to)):
+                if value is not None and value[1] != 0.5:
                     yield f"{key} = {list(value)}: y must be 0.5 in a 2D case"
             if self.at[1]:
                 yield f"at = {list(self.at)}: y must be 0 in a 2D case"

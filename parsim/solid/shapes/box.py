@@ -13,6 +13,7 @@ from parsim.solid.shapes.samples import Samples
 from parsim.solid.shapes.shape import ShapeTable
 
 _SIGNS = np.array([[(c >> a & 1) * 2.0 - 1.0 for a in range(3)] for c in range(8)])  # corners
+MOST = 1e6  # contact elements of a body
 _QUADS = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
 
 
@@ -42,6 +43,13 @@ class BoxShape(ShapeTable):
         """See `ShapeTable`."""
         if planar and self.size[1] != 1.0:
             yield f"{self.told()}: y must be 1 in a 2D case"
+        a, b, c = sorted(self.size)
+        count = 0.0 if planar else 2.0 * (a * b + b * c + c * a) / a**2
+        if count > MOST:
+            yield (
+                f"{self.told()}: contact elements, as far apart as its thinnest edge, would be {count:.3g}; at most "
+                f"{MOST:.3g}"
+            )
 
     def radius(self, planar):
         """See `ShapeTable`; the metre across a plane turns with nothing."""

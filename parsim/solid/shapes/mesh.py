@@ -38,6 +38,11 @@ class MeshShape(Meshed):
     )
     digest: str | None = Field(None, description=DIGEST)
 
+    def completed(self):
+        """See `ShapeTable`. Raises InputError for a file that holds no mesh."""
+        _ = self._mesh
+        return super().completed()
+
     @property
     def _mesh(self):
         return _read(self.file, mark_of(self.file), self.scale, self.thickness)

@@ -132,6 +132,7 @@ def faults_of(points):
 def centred(points):
     """Corners (k, 2), m, anticlockwise, about their centre of area."""
     corners = np.array(points, float)
+    corners -= corners.mean(axis=0)  # or the sums lose their digits far from the origin, as on a map
     x, y = corners.T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y
     if cross.sum() < 0.0:
