@@ -33,10 +33,11 @@ class Job:
             start_new_session=True,
         )
 
-    def until(self, happened):
-        """Wait until `happened()`, without a pause; the job must not end before."""
+    def until(self, happened, pause=0.02):
+        """Wait until `happened()`, which is asked after pauses, s, that leave the job its core; it must not end before."""
         begin = time.monotonic()
         while not happened():
+            time.sleep(pause)
             assert self.process.poll() is None, f"ended early with {self.process.returncode}: {self.said()}"
             assert time.monotonic() - begin < PATIENCE, self.said()
 

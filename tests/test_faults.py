@@ -86,7 +86,7 @@ def test_five_pieces_are_one_run(whole, tmp_path, started, capsys):
     fourth = checkpoint.newest(out)[0].account["time"]
     mpirun_killed = started(["resume", out], 2, bare=True)
     mpirun_killed.until(lambda: time_of(out) > fourth + 0.03)
-    mpirun_killed.until(lambda: writing(out))
+    mpirun_killed.until(lambda: writing(out), pause=0.0)
     send(mpirun_killed, jobs.KILL)
     assert mpirun_killed.end() == -jobs.KILL and gone(mpirun_killed)
     assert time_of(out) < 0.58, "too near the end to be a piece"
@@ -149,7 +149,7 @@ def test_one_bad_rank_ends_the_job(disturbed, how, rank, said):
     job.until(lambda: time_of(out) >= 0.0)
     begin = time.monotonic()
     assert job.end() not in (0, 75)
-    assert time.monotonic() - begin < (100.0 if how in ("sleeps", "stops", "waits") else 10.0)
+    assert time.monotonic() - begin < (100.0 if how in ("sleeps", "stops", "waits") else 30.0)
     assert said in job.said()
     assert gone(job)
     if how == "sleeps":
