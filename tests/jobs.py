@@ -34,7 +34,7 @@ class Job:
         )
 
     def until(self, happened, pause=0.02):
-        """Wait until `happened()`, which is asked after pauses, s, that leave the job its core; it must not end before."""
+        """Wait until `happened()`, asked after pauses, s, that leave the job its core; it must not end before."""
         begin = time.monotonic()
         while not happened():
             time.sleep(pause)

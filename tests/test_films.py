@@ -164,6 +164,19 @@ def test_what_is_shut_in_is_led_away_from_where_solids_touch():
     assert found == SHUT_IN and way[1] < -0.2, "not up between them"
 
 
+def test_what_is_shut_in_does_not_meet_in_one_place():
+    """Three drops under a plate, a 50th of a spacing apart: in a pocket, two came to one place, and were no numbers."""
+    wide = FIXED | {"shape": {"size": [0.12, 1.0, 0.06]}, "position": [0.2, 0.5, 0.034]}
+    s = simulation(POOL | {"bodies": [wide]})
+    p, b, stray = s.domain.particles, s.bodies, s.solids.stray
+    at = stray.beside[np.argsort(np.hypot(p.x[stray.beside] - 0.18, p.z[stray.beside]))[:3]]
+    p.x[at], p.z[at], pose = 0.18 + 0.0002 * np.arange(3), 0.002, (b.position, b.quaternion)
+    for _ in range(40):
+        stray.turn_out(s.flow(), pose, s.solids.films.around(np.zeros(4), *pose), 1e-3)
+        stray.lead_out(p, 1e-3)
+    assert (p.surface[at] == SHUT_IN).all() and np.diff(np.sort(p.x[at])).min() > 0.2 * s.case.spacing
+
+
 def test_water_on_bodies_that_stand_in_each_other_is_not_shut_in():
     left, right = (FIXED | {"name": name, "position": [x, 0.5, 0.15]} for name, x in (("left", 0.18), ("right", 0.22)))
     assert led([left, right], (0.2, 0.184))[0] != SHUT_IN

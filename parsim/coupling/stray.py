@@ -19,6 +19,7 @@ from parsim.solid.shapes.kernels import distance
 
 _WAY_OUT = 5.0  # spacings that the fastest water goes while a particle inside a body comes out
 _THIN = 0.7  # gap, in spacings, under which a layer has parted into drops
+_APART = 0.5  # spacings that drops in a gap keep from each other: in a pocket all ways lead to one place after all
 
 
 class Ways(NamedTuple):
@@ -114,13 +115,29 @@ def way_along(x, n, b, solids, turn, spacing, down):
 
 
 @kernel
+def away_from_others(i, lists, place, n, reach):
+    """Vector (3,) across n (3,) off the fluid around particle `i`: of length 1 for one at half of `reach`, m."""
+    start, middle, _, index = lists
+    x, y, z = place
+    px, py, pz = 0.0, 0.0, 0.0
+    for s in range(start[i], middle[i]):
+        j = index[s]
+        dx, dy, dz = x[i] - x[j], y[i] - y[j], z[i] - z[j]
+        r = math.sqrt(dx * dx + dy * dy + dz * dz)
+        if 0.0 < r < reach:
+            share = 2.0 * (1.0 - r / reach) / r
+            px, py, pz = px + share * dx, py + share * dy, pz + share * dz
+    return across(px, py, pz, n)
+
+
+@kernel
 def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
     """Velocity of fluid inside a body: outward where the surface is nearest, at least its depth at the rate out.
 
     Fluid in a thin gap between a body and another solid goes with the body, and besides, `lead` (n, 3) of `at` (n,),
-    m/s, to the middle of the gap, and along; its class says so. Bodies that move come before fixed ones; where two
-    overlap by more than half a spacing there is no gap. `of_samples`: body and shift of each particle, and whether a
-    body is fixed; `noted`: the classes of all, and `lead`.
+    m/s, to the middle of the gap, and along, off other fluid there; its class says so. Bodies that move come before
+    fixed ones; where two overlap by more than half a spacing there is no gap. `of_samples`: body and shift of each
+    particle, and whether a body is fixed; `noted`: the classes of all, and `lead`.
     """
     surface, lead = noted
     body, shift, fixed = of_samples
@@ -153,8 +170,12 @@ def turn_out(at, lists, of_samples, motion, solids, ways, kinematics, noted):
             if thin:
                 u[i], v[i], w[i], surface[i] = bu, bv, bw, SHUT_IN
                 way, off = way_along(place, n, b, solids, t, spacing, down), middling * (0.5 * gap + depth)
-                for k in range(3):
-                    lead[row, k] = off * n[k] + along * way[k]
+                free = away_from_others(i, lists, kinematics.place, n, _APART * spacing)
+                wx, wy, wz = way[0] + free[0], way[1] + free[1], way[2] + free[2]
+                speed = along / max(math.sqrt(wx * wx + wy * wy + wz * wz), 1.0)
+                lead[row, 0] = off * n[0] + speed * wx
+                lead[row, 1] = off * n[1] + speed * wy
+                lead[row, 2] = off * n[2] + speed * wz
                 caught = True
                 if fixed[b]:
                     continue
