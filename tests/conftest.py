@@ -21,8 +21,10 @@ LONGEST = "test_uncompiled.py", "test_faults.py", "test_same_bits.py", "test_sph
 
 
 def pytest_configure(config):
-    """Give every mpirun a time limit of its own, also those that a test starts without the fixture."""
+    """Give every mpirun a time limit of its own, also those that a test starts without the fixture; hear SIGINT."""
     os.environ.setdefault("MPIEXEC_TIMEOUT", str(2 * PATIENCE))
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # in the background of a script; tests send it
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items):

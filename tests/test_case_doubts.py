@@ -178,3 +178,11 @@ def test_a_narrow_passage_between_fixed_bodies_is_told(gap, words):
     case["bodies"] = [body | {"fixed": True} for body in case["bodies"]]
     said = told(case)
     assert words in said if words else "passage" not in said
+
+
+def test_smooth_walls_do_not_rub_water_without_viscosity():
+    case = fills((0.0, 0.4, 0.0, 0.3))
+    case["water"] |= {"friction": {"kind": "wall_law"}, "viscosity": 0.0}
+    assert "what is smooth rubs such water with no stress at all" in told(case)
+    case["water"] |= {"friction": {"kind": "wall_law", "roughness": 0.001}}
+    assert "no stress" not in told(case)

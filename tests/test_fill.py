@@ -7,6 +7,7 @@ from test_water import TANK, simulation
 
 from parsim.case.fill import profile_shares
 from parsim.case.model import Fill, parse
+from parsim.case.openings import standing_at
 from parsim.domain.comm import Comm
 from parsim.fluid.wcmps.scheme import WCMPS
 from parsim.geometry.rotation import matrices
@@ -202,3 +203,16 @@ def test_slabs_start_with_the_parts_of_one_disorder_and_flow():
     order = np.argsort(np.concatenate([part.id for part in parts]))
     for name in ("id", "x", "z", "u", "w", "n"):
         assert (np.concatenate([getattr(part, name) for part in parts])[order] == getattr(whole, name)).all()
+
+
+def test_the_water_at_a_side_is_looked_for_beside_its_middle():
+    """Two arms of a river beside an island; where there is water amid, that one tells."""
+    arms = [
+        {"min": [0.0, low, 0.0], "max": [0.4, high, level]} for low, high, level in ((0.0, 0.1, 0.1), (0.2, 0.3, 0.12))
+    ]
+    case = parse(TANK | {"dimensions": 3, "box": {"max": [0.4, 0.3, 0.2]}, "water": {"fill": arms}})
+    assert standing_at(case, 0.0) == (0.0, 0.12)
+    assert standing_at(case, 9.0) is None
+    amid = {"min": [0.0, 0.1, 0.0], "max": [0.4, 0.2, 0.06]}
+    case = parse(TANK | {"dimensions": 3, "box": {"max": [0.4, 0.3, 0.2]}, "water": {"fill": [*arms, amid]}})
+    assert standing_at(case, 0.0) == (0.0, 0.06)

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from parsim.case.course import at_time
-from parsim.case.fill import water_at
-from parsim.case.openings import normal_level, section_of
+from parsim.case.openings import normal_level, section_of, standing_at
 from parsim.geometry.faces import walled_sides
 from parsim.particles.state import FLUID
 
@@ -49,7 +48,7 @@ class Outlet:
         self._head = case.water.density * self._gravity
         self.discharge = self._mean = self._edge = math.nan
         self._gain = self._rise = 0.0
-        standing = water_at(case.water.fill, self.x - 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1]))
+        standing = standing_at(case, self.x - 0.5 * case.spacing)
         self.level = standing[1] if standing else self._floor
         if self._side.level is not None:
             self.level = at_time(self._side.level, case.start)

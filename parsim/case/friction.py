@@ -85,6 +85,8 @@ def doubts(case):
         return
     given = {"water.friction.roughness": friction.roughness}
     given |= {f"materials.{n}.roughness": m.roughness for n, m in case.materials.items() if m.roughness is not None}
+    if case.water.viscosity == 0.0 and not all(given.values()):
+        yield "water.viscosity = 0.0: what is smooth rubs such water with no stress at all; 1e-6 m2/s is that of water"
     most = 30.0 * 1.5 * case.spacing / math.e
     for key, rough in given.items():
         if rough > most:

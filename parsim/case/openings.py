@@ -14,6 +14,7 @@ from parsim.geometry.faces import SIDES, walled_sides
 from parsim.solid.shapes.bed import BedShape
 
 _PLACE = {"inlet": "x_min", "outlet": "x_max"}
+_LOOKS = 101  # places across at which water is looked for
 _MOST = 500  # columns, and rows of them, in which an inlet is looked at
 
 
@@ -34,8 +35,7 @@ def faults(case):
 
 
 def _inlet(case):
-    side, middle = case.box.faces.x_min, 0.5 * (case.box.min[1] + case.box.max[1])
-    standing = water_at(case.water.fill, case.box.min[0], middle)
+    side, standing = case.box.faces.x_min, standing_at(case, case.box.min[0])
     if standing is None:
         yield f"kind: no fill reaches the inlet, x = {case.box.min[0]!r} m; the water must begin there"
         return
@@ -69,6 +69,12 @@ def doubts(case):
             yield (
                 f"box.faces.x_min.profile: comes in at up to {fast:.4g} m/s, more than the largest expected speed, "
                 f"{case.speed:.4g} m/s; give water.speed"
+            )
+    for supply in case.ice.supplies if come.kind == "inlet" else ():
+        if supply.discharge is not None and highest(supply.discharge) > most:
+            yield (
+                f"ice.supplies.{supply.name}.discharge: up to {highest(supply.discharge):g}, more than of "
+                f"the water, {most:g}"
             )
     if gone.kind == "outlet" and gone.rating is not None and gone.rating[-1][0] < most:
         yield (
@@ -113,9 +119,17 @@ def _backward(profile):
 
 def level_at_start(case):
     """Level of the water that stands at the inlet at the start, m; that of the floor where there is none."""
-    x, y = case.box.min[0] + 0.5 * case.spacing, 0.5 * (case.box.min[1] + case.box.max[1])
-    standing = water_at(case.water.fill, x, y)
+    standing = standing_at(case, case.box.min[0] + 0.5 * case.spacing)
     return standing[1] if standing else case.box.min[2]
+
+
+def standing_at(case, x):
+    """Bottom and level, m, of the water that stands at x amid the box, else of the highest beside; None without."""
+    low, across = case.box.min[1], case.box.size[1]
+    amid, *beside = (
+        water_at(case.water.fill, x, low + share * across) for share in (0.5, *np.linspace(0.0, 1.0, _LOOKS).tolist())
+    )
+    return amid or max(filter(None, beside), key=lambda water: water[1], default=None)
 
 
 def section_of(case, x):

@@ -29,15 +29,20 @@ def tried(
         words = ["run", path, "-o", out, *changed(changes, None, None), *(["-n", ranks] if ranks > 1 else [])]
         words += ["--until", repr(until)] if until is not None else []
         line = [sys.executable, "-P", "-m", "parsim", *map(str, words)]
-        with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        with (
+            tempfile.TemporaryFile("w+") as errors,  # a pipe that nobody reads would stop a run of many warnings
+            subprocess.Popen(line, stdout=subprocess.PIPE, stderr=errors, text=True) as process,
+        ):
             assert process.stdout is not None
             while (said := process.stdout.readline()) and _STEPS not in said:
                 pass  # kernels may be compiled before
             try:
-                _, told = process.communicate(timeout=seconds)
+                process.communicate(timeout=seconds)
             except subprocess.TimeoutExpired:
                 process.terminate()
-                _, told = process.communicate()
+                process.communicate()
+            errors.seek(0)
+            told = errors.read()
         found = parsim.open(out).info if is_output(out) else {}
     if "wall_s" not in found:
         raise InputError(f"--trial: the run failed: {told.strip().rpartition('error: ')[2]}")
