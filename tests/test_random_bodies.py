@@ -218,7 +218,7 @@ def come_to_rest(case):
 
 
 SHORT = {
-    35: "1.7 spacings: lies on another body, half afloat, and parts the tank in two; contact and lift are off together",
+    35: "1.7 spacings: it lies on another body, and a drop on its deck raises the one head that its films have",
     47: "0.46 of a spacing by heads, which stand over the surface between three bodies; by the surface 0.2",
 }
 
