@@ -186,3 +186,14 @@ def test_smooth_walls_do_not_rub_water_without_viscosity():
     assert "what is smooth rubs such water with no stress at all" in told(case)
     case["water"] |= {"friction": {"kind": "wall_law", "roughness": 0.001}}
     assert "no stress" not in told(case)
+
+
+def test_crushing_against_a_taller_cylinder_is_doubted():
+    ice = {"young": 1e9, "poisson": 0.3, "friction": 0.1, "restitution": 0.3, "crushing_strength": 5e5}
+    pier = {"name": "pier", "shape": {"kind": "cylinder", "diameter": 0.1, "height": 0.3}, "density": 2000.0,
+            "material": "ice", "position": [0.2, 0.2, 0.15], "fixed": True}  # fmt: skip
+    case = {"dimensions": 3, "box": {"max": [0.4, 0.4, 0.4]}, "materials": {"ice": ice}, "bodies": [pier],
+            "run": {"until": 1.0}}  # fmt: skip
+    assert "what is shorter than bodies.pier, a cylinder, pushes its side with 1.7 to 6.7 times" in told(case)
+    ice.pop("crushing_strength")
+    assert "pushes its side" not in told(case)

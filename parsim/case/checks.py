@@ -65,7 +65,7 @@ def doubts(case):
         + [f"output.sensors.{sensor.name}.{text}" for sensor in case.output.sensors for text in sensor.doubts(case)]
         + [*ice.doubts(case)]
         + case.water.scheme.doubts()
-        + case.contacts.law.doubts(case.dimensions == 2)
+        + [*case.contacts.law.doubts(case.dimensions == 2), *contacts.doubts(case)]
         + fills.doubts(case)
         + [*friction.doubts(case), *bed.doubts(case), *openings.doubts(case)]
     )

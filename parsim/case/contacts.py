@@ -75,3 +75,14 @@ def unknown_material(name, known):
     """Why a material is none, for the end of a message."""
     allowed = ", ".join(known) or "none, [materials.NAME] is missing"
     return f"no such material; allowed: {allowed}{suggestion(nearest(name, known))}"
+
+
+def doubts(case):
+    """What is allowed but doubtful in contacts: messages."""
+    crushed = [name for name, material in case.materials.items() if material.crushing_strength is not None]
+    tall = [body.name for body in case.bodies if body.fixed and body.shape.kind == "cylinder"]
+    if crushed and tall:
+        yield (
+            f"materials.{crushed[0]}.crushing_strength: what is shorter than bodies.{tall[0]}, a cylinder, pushes its "
+            "side with 1.7 to 6.7 times that pressure and the area that touches; boxes and prisms do with 0.8 to 1.8"
+        )
