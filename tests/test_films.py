@@ -78,8 +78,9 @@ def test_a_drop_does_not_lift_what_it_falls_on():
     assert load[2] < 0.02 * WEIGHT
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("speed", [0.0, 0.3])
+@pytest.mark.parametrize("speed", [
+    pytest.param(0.0, marks=pytest.mark.slow), pytest.param(0.3, marks=pytest.mark.long),
+])  # fmt: skip
 def test_a_plate_that_sinks_comes_to_lie_on_the_bed_and_not_on_the_drops_under_it(speed):
     """Drops shut in under it carried it like balls: it slid on for seconds, and the tank rang by spacings of head."""
     plate = SQUARE | {"shape": {"size": [0.16, 1.0, 0.03]}, "density": 2800.0, "position": [0.14, 0.5, 0.05]}

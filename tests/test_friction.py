@@ -99,8 +99,9 @@ def channel(rows):
     return simulation(given, gravity=[GRAVITY * SLOPE, 0.0, -GRAVITY], run={"settle": 0.5}), mean
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("rows", [10, 20])
+@pytest.mark.parametrize("rows", [
+    pytest.param(10, marks=pytest.mark.long), pytest.param(20, marks=pytest.mark.slow),  # which validate runs too
+])  # fmt: skip
 def test_a_channel_keeps_its_uniform_flow(rows):
     """River case R1: mean within 1 %, profile within 2 % of it, momentum in balance within 0.5 %, depth 0.1 / rows."""
     s, mean = channel(rows)
