@@ -86,8 +86,9 @@ def doubts(case):
 def _fastest(case):
     """Of the water that comes in fastest: mean speed, m/s, discharge, area, and greatest depth, m."""
     side, inlet, fastest = case.box.faces.x_min, inlet_of(case), (0.0, 0.0, 0.0, case.spacing)
+    start = level_at_start(case)
     for time in (0.0, *times_of(side.discharge, side.level)):
-        level = level_at_start(case) if side.level is None else at_time(side.level, time)
+        level = start if side.level is None else at_time(side.level, time)
         (area, _, depth), discharge = inlet(level), at_time(side.discharge, time)
         if area > 0.0:  # else the box is told of elsewhere
             fastest = max(fastest, (discharge / area, discharge, area, depth))
@@ -125,11 +126,11 @@ def level_at_start(case):
 
 def standing_at(case, x):
     """Bottom and level, m, of the water that stands at x amid the box, else of the highest beside; None without."""
-    low, across = case.box.min[1], case.box.size[1]
-    amid, *beside = (
-        water_at(case.water.fill, x, low + share * across) for share in (0.5, *np.linspace(0.0, 1.0, _LOOKS).tolist())
-    )
-    return amid or max(filter(None, beside), key=lambda water: water[1], default=None)
+    low, high = case.box.min[1], case.box.max[1]
+    if amid := water_at(case.water.fill, x, 0.5 * (low + high)):
+        return amid
+    beside = (water_at(case.water.fill, x, y) for y in np.linspace(low, high, _LOOKS).tolist())
+    return max(filter(None, beside), key=lambda water: water[1], default=None)
 
 
 def section_of(case, x):

@@ -74,7 +74,8 @@ class _Queue:
     @property
     def lag(self) -> int:
         """How many floes ought to have come in and have not."""
-        owed, ahead = self.wanted - self.given, np.cumsum([0.0, *self.amounts[self.next :]])
+        owed = max(self.wanted - self.given, 0.0)  # rounding may leave less
+        ahead = np.cumsum([0.0, *self.amounts[self.next :]])
         count = int(np.searchsorted(ahead, owed, side="right")) - 1
         beyond = owed - ahead[-1] if count == len(ahead) - 1 else 0.0  # where more is wanted than was drawn
         return count + int(beyond / np.mean(self.amounts))
