@@ -2,10 +2,13 @@
 
 from typing import Annotated
 
+import numpy as np
 from pydantic import Field
 
+from parsim.case.places import of_body
 from parsim.case.types import LEAST, Name, NotNegative, Positive, Real, Share, Table, Whole
 from parsim.errors import nearest, suggestion
+from parsim.geometry.faces import period
 from parsim.solid.laws import DEFAULT, Law
 
 
@@ -79,10 +82,13 @@ def unknown_material(name, known):
 
 def doubts(case):
     """What is allowed but doubtful in contacts: messages."""
-    crushed = [name for name, material in case.materials.items() if material.crushing_strength is not None]
-    tall = [body.name for body in case.bodies if body.fixed and body.shape.kind == "cylinder"]
-    if crushed and tall:
-        yield (
-            f"materials.{crushed[0]}.crushing_strength: what is shorter than bodies.{tall[0]}, a cylinder, pushes its "
-            "side with 1.7 to 6.7 times that pressure and the area that touches; boxes and prisms do with 0.8 to 1.8"
-        )
+    reach = np.array([of_body(body).reach for body in case.bodies]).reshape(-1, 3)
+    for axis, length in zip("xyz", period(case), strict=True):
+        along = reach[:, "xyz".index(axis)]
+        some = np.argsort(along)[-2:]
+        if len(some) == 2 and (both := 2.0 * along[some].sum()) > length:
+            one, two = (case.bodies[k].name for k in some[::-1])
+            yield (
+                f"bodies.{one}: with bodies.{two} {both:.4g} m long, more than the {length:.4g} m after which {axis} "
+                "repeats; where both are level they touch through the nearer of their images only"
+            )

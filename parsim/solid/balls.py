@@ -7,11 +7,24 @@ import math
 
 from parsim.machine.jit import inlined, kernel
 from parsim.solid.curves import spot_area
-from parsim.solid.element import friction_force, give_way, normal_force, rolling_torque
+from parsim.solid.element import friction_force, give_way, normal_force, of_spot, rolling_torque, twisting_torque
 from parsim.solid.faces import EXPECTED
 from parsim.solid.laws.kernels import stiffness
 from parsim.solid.laws.law import LINE, SPOT
-from parsim.solid.search import CRUSHED, DEPTH, FEATURE, LAST, NORMAL, ROLL, STRETCH, TOUCHING, WALL_MATERIAL, A, B
+from parsim.solid.search import (
+    CRUSHED,
+    DEPTH,
+    FEATURE,
+    LAST,
+    NORMAL,
+    ROLL,
+    STRETCH,
+    TOUCHING,
+    TWIST,
+    WALL_MATERIAL,
+    A,
+    B,
+)
 from parsim.solid.separation import BALLS, gap_of_balls
 from parsim.solid.speeds import add_rate
 from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, three
@@ -43,7 +56,7 @@ def press_balls(m, touch, which, lapse, span):
         if not marks[pairs[c, LAST], TOUCHING]:
             slot[STRETCH:NORMAL], marks[pairs[c, LAST], TOUCHING], age = 0.0, 1, 0.0
         law = _law(m, ab, -apart, touch.walls, touch.pair_law, touch.law, touch.forms.planar)
-        _push(m, slot, tanks[c], ab, n, law, (-apart, age, span))
+        _push(m, slot, tanks[c], ab, n, law, (-apart, age, span), touch.forms.planar)
     return touching
 
 
@@ -110,7 +123,7 @@ def _arms(m, a, b, deep):
 
 
 @kernel
-def _push(m, slot, tank, ab, n, law, now):
+def _push(m, slot, tank, ab, n, law, now, planar):
     """The law for one pair with its slot and its tank; `now`: depth, m, age of its springs and span of the kick, s."""
     a, b = ab
     light, arm = lightness(m, a, b), _arms(m, a, b, now[0])
@@ -129,6 +142,9 @@ def _push(m, slot, tank, ab, n, law, now):
     if law[7] > 0.0:
         turn, roll, more = turn_of_balls(law, n, spin, light, normal, roll, now)
         energy += more
+    if not planar:
+        t, slot[TWIST], more = twist_of_balls(law, n, spin, light, normal, slot[TWIST], now)
+        turn, energy = (turn[0] + t * n[0], turn[1] + t * n[1], turn[2] + t * n[2]), energy + more
     for k in range(3):
         slot[STRETCH + k], slot[ROLL + k] = s[k], roll[k]
     tank[NOW], tank[SHEAR] = energy + law[3] * elastic * now[0], energy
@@ -168,6 +184,16 @@ def turn_of_balls(law, n, spin, light, normal, roll, now):
     share, dashpot = 2.25 * rolling * rolling, dashpot_of_balls(law, light, now[2])
     stiff, drag = share * rigid * area, math.sqrt(share) * dashpot * area
     return rolling_torque(roll, n, spin, now[1], rolling * normal, radius, stiff, drag)
+
+
+@inlined
+def twist_of_balls(law, n, spin, light, normal, twist, now):
+    """(torque along the normal, N m, new twist, rad, energy in it, J) on ball a; see `push_of_balls`."""
+    area, radius, rigid, _, _, mu, shear, _, _ = law
+    spot, stiff = of_spot(area, mu)
+    speed = spin[0] * n[0] + spin[1] * n[1] + spin[2] * n[2]
+    stiff, inertia = stiff * shear * rigid * area, 0.4 * radius * radius / light
+    return twisting_torque(twist, speed, now[1], spot * normal, stiff, inertia)
 
 
 @kernel

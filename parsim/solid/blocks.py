@@ -4,7 +4,8 @@ A block is ROWS rows of 64 numbers: RA, RB, m, radii of balls a and b, of a wall
 1/kg, 1 / effective mass; OWN, DAMPING, MU, SHEAR, ROLLING, see `forces.press`; BY (3), m, to the periodic image of b;
 TOUCHING, 1 or 0; LAPSE, STORED, LOST, SHEARED, NOW, see `tanks`; ROOM, J, the most that its tank may hold; FREED, J,
 what its friction springs hold less than before; DEEP, m; NORMAL, ELASTIC, N; N (3); SLIP, friction (3), N; TURN,
-against rolling (3), N m; STRETCH, ROLL (3), m; WORK, WASTE, J, of all its loads and of what they dissipate in a kick.
+against rolling and twisting (3), N m; STRETCH, ROLL (3), m; TWIST, rad; WORK, WASTE, J, of all its loads and of what
+they dissipate in a kick.
 
 Loops are over all 64, with what does not touch masked, and take roots eight at a time. What they call must be
 `inlined`; a block is handed on as a view from 0 on, for where an index may be negative no loop becomes vector code.
@@ -13,14 +14,14 @@ Loops are over all 64, with what does not touch masked, and take roots eight at 
 import math
 
 from parsim.machine.jit import inlined, kernel
-from parsim.solid.balls import push_of_balls, turn_of_balls
+from parsim.solid.balls import push_of_balls, turn_of_balls, twist_of_balls
 from parsim.solid.curves import spot_area
 from parsim.solid.laws.kernels import stiffness
 
-LANES, ROWS = 64, 40
+LANES, ROWS = 64, 41
 (
     RA, RB, ROUND, LIGHT, OWN, DAMPING, MU, SHEAR, ROLLING, BY, _, _, TOUCHING, LAPSE, STORED, LOST, SHEARED, NOW, ROOM,
-    FREED, DEEP, NORMAL, ELASTIC, N, _, _, SLIP, _, _, TURN, _, _, STRETCH, _, _, ROLL, _, _, WORK, WASTE,
+    FREED, DEEP, NORMAL, ELASTIC, N, _, _, SLIP, _, _, TURN, _, _, STRETCH, _, _, ROLL, _, _, TWIST, WORK, WASTE,
 ) = range(0, ROWS * LANES, LANES)  # fmt: skip
 _V, _A, _B, _R, _D, _NEW, _FAR, _AREA, _RIGID, _HELD, _MORE = (
     LANES * k for k in (0, 3, 6, 9, 12, 15, 18, 19, 20, 21, 22)
@@ -148,6 +149,26 @@ def roll(pair, s, lapse, span):
         pair[i + SHEARED] += energy
 
 
+@kernel
+def twist(pair, s, lapse, span):
+    """Add what friction does against turns about the normal to the forces of a block, known from `respond`."""
+    for i in range(LANES):
+        on, was, n = pair[i + DEEP] > 0.0, pair[i + TOUCHING], (pair[i + N], pair[i + N + _Y], pair[i + N + _Z])
+        shear = s[_MORE + i] * pair[i + SHEAR] if on else 1.0
+        own = s[_AREA + i], pair[i + ROUND], s[_RIGID + i], 1.0, 0.0, pair[i + MU], shear, 0.0, math.inf
+        spin = s[_A + i] - s[_B + i], s[_A + _Y + i] - s[_B + _Y + i], s[_A + _Z + i] - s[_B + _Z + i]
+        now = pair[i + DEEP], was * (lapse + pair[i + LAPSE]), span
+        t, turned, energy = twist_of_balls(own, n, spin, pair[i + LIGHT], pair[i + NORMAL], was * pair[i + TWIST], now)
+        for a in range(3):
+            pair[i + TURN + a * LANES] += t * n[a] if on else 0.0
+        pair[i + TWIST] = turned if on else 0.0
+        energy = energy if on else 0.0
+        pair[i + NOW] += energy
+        pair[i + ROOM] += energy
+        pair[i + FREED] -= energy
+        pair[i + SHEARED] += energy
+
+
 @inlined
 def _armed(s, i, one, two):
     """Spins times arms along the normal, of a less that of b."""
@@ -220,6 +241,7 @@ def slacken(pair, k, share):
     """Leave the pair at `k` this share of its loads, and its friction springs the stretch that goes with theirs."""
     pair[k + NORMAL] *= share
     pair[k + ELASTIC] *= share
+    pair[k + TWIST] *= share
     for c in range(3):
         for row in (SLIP, TURN, STRETCH, ROLL):
             pair[k + row + c * LANES] *= share

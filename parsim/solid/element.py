@@ -1,6 +1,7 @@
 """One contact element: its normal force with a dashpot, its friction spring with memory.
 
-Friction is a spring with memory (Cundall & Strack 1979), capped at mu times the normal force of the element.
+Friction is a spring with memory (Cundall & Strack 1979), capped at mu times the normal force of the element. What is
+round turns on its spot against the friction of a spot that is no point.
 """
 
 import math
@@ -68,6 +69,32 @@ def rolling_torque(roll, n, spin, lapse, limit, radius, stiffness, dashpot):
     (x, y, z), roll, energy = friction_force(roll, n, v, lapse, limit, stiffness, dashpot)
     torque = radius * (n[1] * z - n[2] * y), radius * (n[2] * x - n[0] * z), radius * (n[0] * y - n[1] * x)
     return torque, roll, energy
+
+
+@inlined
+def twisting_torque(twist, speed, lapse, limit, stiffness, inertia):
+    """(torque along the normal, N m, new twist, rad, and the elastic energy stored) of what turns on its spot.
+
+    `speed`: of the turn about the normal, rad/s, for `lapse` seconds since; `limit`, N m. Critically damped for this
+    `inertia`, kg m2: no spot is known to swing.
+    """
+    twist, dashpot = twist + lapse * speed, 2.0 * math.sqrt(stiffness * inertia)
+    if stiffness * abs(twist) >= limit:
+        twist = math.copysign(limit / stiffness, twist) if stiffness > 0.0 else 0.0
+        dashpot = 0.0
+    torque = min(max(-stiffness * twist - dashpot * speed, -limit), limit)
+    return torque, twist, 0.5 * stiffness * twist * twist
+
+
+@inlined
+def of_spot(area, mu):
+    """(limit over normal force, m, stiffness over that sideways, m2) of what turns on a round spot of this area, m2.
+
+    Of a circle of radius a whose pressure is that of Hertz: 3 pi / 16 mu N a (Johnson 1985, sec. 3.8), and what is as
+    stiff everywhere sideways, a^2 / 2.
+    """
+    square = area / math.pi
+    return 3.0 * math.pi / 16.0 * mu * math.sqrt(square), 0.5 * square
 
 
 @inlined

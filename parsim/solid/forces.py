@@ -5,9 +5,10 @@ import math
 from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
 from parsim.solid.balls import press_balls
-from parsim.solid.element import friction_force, give_way, normal_force, rolling_torque
+from parsim.solid.element import friction_force, give_way, normal_force, of_spot, rolling_torque, twisting_torque
 from parsim.solid.hollows import normal_by_elements
-from parsim.solid.laws.kernels import stiffness
+from parsim.solid.laws.kernels import coefficients, stiffness
+from parsim.solid.laws.law import SPOT
 from parsim.solid.motion import answer, clear_loads
 from parsim.solid.search import (
     AREA,
@@ -21,14 +22,14 @@ from parsim.solid.search import (
     ROLL,
     STRETCH,
     TOUCHING,
-    WALL_MATERIAL,
+    TWIST,
     A,
     B,
 )
 from parsim.solid.separation import BALLS, FIELD, between
 from parsim.solid.speeds import speed_of
 from parsim.solid.springs import pull_springs
-from parsim.solid.table import INVERSE, LIGHT, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, is_tied, three, turn_at
+from parsim.solid.table import INVERSE, LIGHT, POSITION, RUSH, SPIN, VELOCITY, is_tied, three, turn_at
 from parsim.solid.tanks import BEND, DEEP, LAPSE, LOADS, RADIUS, SHARE, load_pair
 from parsim.solid.touch import centre_of, measure, normal_of
 
@@ -76,14 +77,6 @@ def pull_and_date(m, touch, island, span):
     if span > 0.0:
         for c in which:
             touch.tanks[c, LAPSE] = 0.0
-
-
-@kernel
-def coefficients(m, touch, a, b):
-    """The column of `pair_law` of bodies a and b, or a and wall -1 - b."""
-    law, walls = touch.pair_law, touch.walls
-    one, two = int(m[a, MATERIAL]), int(m[b, MATERIAL] if b >= 0 else walls[-1 - b, WALL_MATERIAL])
-    return law[0, one, two], law[1, one, two], law[2, one, two], law[3, one, two], law[4, one, two], law[5, one, two]
 
 
 @kernel
@@ -144,7 +137,8 @@ def _push(m, touch, c, n, total, times):
     springs = rigid * _pressed_in(touch, first, last, strength / rigid) - _along(touch.tanks, c, n)
     dashpot /= 1.0 + 0.5 * times[1] * dashpot * total / effective
     ahead = times[0], 0.5 * times[1] * (_parting(m, a, b, n) + light * springs)
-    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], own, strength)
+    inert = 0.4 * effective * touch.tanks[c, RADIUS] ** 2 if touch.tanks[c, BEND] == SPOT else 0.0
+    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], inert, own, strength)
     touching, sheared, pressed, force, loss = _sum(touch, first, last, n, motion, ahead, law)
     return touching, sheared + pressed, sheared, force, loss
 
@@ -191,7 +185,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
     speed that the pair will have gained by the middle of the kick, m/s.
     """
     marks, slots, (lapse, sooner) = touch.marks, touch.slots, ahead
-    rigid, dashpot, mu, held, shear, (rolling, radius, own, strength) = law
+    rigid, dashpot, mu, held, shear, (rolling, radius, inert, own, strength) = law
     count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(shear) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -207,9 +201,9 @@ def _sum(touch, first, last, n, motion, ahead, law):
         depth, slots[slot, CRUSHED] = _elastic_depth(touch, slot, strength / rigid)
         speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2] + sooner
         normal, elastic = normal_force(rigid, dashpot, area, depth, speed, strength)
-        s, roll, age = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
+        s, roll, twist, age = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
         if marks[slot, TOUCHING]:
-            s, roll, age = three(slots, slot, STRETCH), three(slots, slot, ROLL), lapse
+            s, roll, twist, age = three(slots, slot, STRETCH), three(slots, slot, ROLL), slots[slot, TWIST], lapse
         slip, s, energy = friction_force(s, n, v, age, mu * normal, shear * rigid * area, tangential * area)
         slots[slot, STRETCH], slots[slot, STRETCH + 1], slots[slot, STRETCH + 2] = s
         marks[slot, TOUCHING] = 1
@@ -221,6 +215,14 @@ def _sum(touch, first, last, n, motion, ahead, law):
             energy += more
             tx, ty, tz = tx + t[0], ty + t[1], tz + t[2]
             ux, uy, uz = ux + t[0], uy + t[1], uz + t[2]
+        if inert > 0.0:
+            spot, stiff = of_spot(area, mu)
+            speed = motion[2][0] * n[0] + motion[2][1] * n[1] + motion[2][2] * n[2]
+            stiff *= shear * rigid * area
+            t, slots[slot, TWIST], more = twisting_torque(twist, speed, age, spot * normal, stiff, inert)
+            energy += more
+            tx, ty, tz = tx + t * n[0], ty + t * n[1], tz + t * n[2]
+            ux, uy, uz = ux + t * n[0], uy + t * n[1], uz + t * n[2]
         count, stored, pressed = count + 1, stored + energy, pressed + held * elastic * depth
         p, q, r = normal * n[0] + slip[0], normal * n[1] + slip[1], normal * n[2] + slip[2]
         fx, fy, fz = fx + p, fy + q, fz + r

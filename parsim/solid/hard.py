@@ -11,9 +11,9 @@ import math
 import numpy as np
 
 from parsim.machine.jit import kernel
-from parsim.solid.forces import coefficients
 from parsim.solid.impulses import solve, velocity_of
 from parsim.solid.islands import islands_of
+from parsim.solid.laws.kernels import coefficients
 from parsim.solid.motion import (
     alone,
     clear_loads,

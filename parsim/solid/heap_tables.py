@@ -152,6 +152,7 @@ def _take_over(touch, heap, count):
         pair[at + blocks.TOUCHING] = touch.marks[slot, search.TOUCHING]
         for k in range(len(_KEPT)):
             pair[at + _KEPT[k][0]] = tank[c, _KEPT[k][1]]
+        pair[at + blocks.TWIST] = slots[slot, search.TWIST]
         for k in range(3):
             row = at + k * LANES
             pair[row + blocks.BY], pair[row + blocks.SLIP] = touch.shift[c, k], tank[c, tanks.LOADS + k]
@@ -172,6 +173,7 @@ def store(touch, heap):
         slots[slot, search.DEPTH] = pair[at + blocks.DEEP]
         for k in range(len(_KEPT)):
             tank[c, _KEPT[k][1]] = pair[at + _KEPT[k][0]]
+        slots[slot, search.TWIST] = pair[at + blocks.TWIST]
         for k in range(3):
             row = at + k * LANES
             tank[c, tanks.LOADS + k] = pair[at + blocks.NORMAL] * pair[row + blocks.N] + pair[row + blocks.SLIP]

@@ -32,6 +32,7 @@ from parsim.solid.blocks import (
 )
 from parsim.solid.forces import free_time
 from parsim.solid.heap_tables import hand_back, heap_of, list_near, store
+from parsim.solid.laws.law import SPOT
 from parsim.solid.search import FEATURE
 from parsim.solid.separation import BALLS
 from parsim.solid.tanks import LAPSE, ROUNDING, SHEAR, share_within
@@ -141,6 +142,10 @@ def _press(touch, heap, lapse, span):
         blocks.respond(pair, s, heap.law[:2], lapse, span)
         if heap.law[2]:
             blocks.roll(pair, s, lapse, span)
+        else:
+            pair[blocks.TURN : blocks.TURN + 3 * LANES] = 0.0
+        if heap.law[1] == SPOT:
+            blocks.twist(pair, s, lapse, span)
         touching += blocks.load_balls(load, a, b, pair)
     return touching
 

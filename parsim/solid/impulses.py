@@ -13,7 +13,7 @@ import numpy as np
 
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
-from parsim.solid.forces import coefficients
+from parsim.solid.laws.kernels import coefficients
 from parsim.solid.motion import answer, update_momentum
 from parsim.solid.points import at_centre
 from parsim.solid.search import A, B

@@ -88,9 +88,9 @@ def begin_substep(m, touch, island, share, when, pressed, out):
 def end_substep(m, touch, island, found, times):
     """Kick by the loads found: (elements that touch, energy in friction springs, heat, work of what is driven)."""
     touching = take_loads(m, touch, island, found, times)
-    shear = restrain(m, touch, island[2], island[0], times[1])
+    shear, spent = restrain(m, touch, island[2], island[0], times[1])
     heat, work = kick_involved(m, island[0], times[1])
-    return touching, shear, heat, work
+    return touching, shear, heat + spent, work
 
 
 def sizes_of(islands):

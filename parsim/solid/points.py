@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from parsim.machine.jit import kernel
-from parsim.solid.forces import coefficients
+from parsim.solid.laws.kernels import coefficients
 from parsim.solid.motion import answer
 from parsim.solid.search import DEPTH, FEATURE, FIRST, LAST, NORMAL, POINT, TOUCHING, A, B
 from parsim.solid.separation import FIELD

@@ -7,8 +7,8 @@ to its periodic image next to a.
 
 Slots, one per element that may touch: `marks`, whole numbers: SLOT_KEY of the pair, ELEMENT (its number in the pair),
 INDEX (its row in the table of elements; -1: none, -2 - k: point k along the curved side), TOUCHING; `slots`: DEPTH, m,
-AREA, m2, POINT, m, STRETCH and ROLL, m, of its springs of friction and of rolling friction, CRUSHED, m, how deep it has
-given way for good, NORMAL where one is a mesh.
+AREA, m2, POINT, m, STRETCH and ROLL, m, TWIST, rad, of its springs of friction, of rolling and of twisting on the spot,
+CRUSHED, m, how deep it has given way for good, NORMAL where one is a mesh.
 Walls, rows of eleven: normal inwards, level (normal . x > level inside), the lowest and highest corner of where they
 are, and WALL_MATERIAL.
 """
@@ -26,8 +26,8 @@ from parsim.solid.table import HALF, POSITION, pose_of, shape_of
 
 A, B, FEATURE, FIRST, MIDDLE, LAST, KEY = range(7)
 SLOT_KEY, ELEMENT, INDEX, TOUCHING = range(4)
-DEPTH, AREA, POINT, STRETCH, ROLL, CRUSHED, NORMAL = 0, 1, 2, 5, 8, 11, 12
-WIDTH = 15  # of slots; from STRETCH to NORMAL is what an element that touches keeps from step to step
+DEPTH, AREA, POINT, STRETCH, ROLL, TWIST, CRUSHED, NORMAL = 0, 1, 2, 5, 8, 11, 12, 13
+WIDTH = 16  # of slots; from STRETCH to NORMAL is what an element that touches keeps from step to step
 WALL_MATERIAL = 10
 
 

@@ -5,15 +5,17 @@ import math
 import numpy as np
 
 from parsim.machine.jit import kernel
-from parsim.solid.forces import coefficients, free_time, hardness, press
+from parsim.solid.forces import free_time, hardness, press
 from parsim.solid.heaps import advance_heap, is_heap
 from parsim.solid.islands import islands_of
+from parsim.solid.laws.kernels import coefficients
+from parsim.solid.laws.law import SPOT
 from parsim.solid.motion import alone, drift_driven, drift_involved, driven_now, kick_involved, set_back
 from parsim.solid.rates import longest_step
-from parsim.solid.search import AREA, CRUSHED, DEPTH, FIRST, LAST, ROLL, STRETCH, A, B
+from parsim.solid.search import AREA, CRUSHED, DEPTH, FIRST, LAST, ROLL, STRETCH, TWIST, A, B
 from parsim.solid.springs import held_by_springs, rate_springs
 from parsim.solid.table import LOAD, TOTAL, three
-from parsim.solid.tanks import LAPSE, SHEAR, STORED, restrain
+from parsim.solid.tanks import BEND, LAPSE, SHEAR, STORED, restrain
 from parsim.solid.touch import measure, normal_of
 
 
@@ -115,9 +117,9 @@ def _advance(m, touch, island, dt, reach, steps_per_contact):
         span = span_of(m, touch, which, (dt, rest, pending, longest), touching > 0 or on_springs)
         drift_involved(m, rows, pending + 0.5 * span)
         touching = press(m, touch, island, pending + 0.5 * span, span)
-        shear = restrain(m, touch, which, rows, span)
+        shear, spent = restrain(m, touch, which, rows, span)
         heat, by_driven = kick_involved(m, rows, span)
-        lost, work, steps = lost + heat, work + by_driven, steps + 1
+        lost, work, steps = lost + (heat + spent), work + by_driven, steps + 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
     come_to_end(m, touch, island, pending)
     return touching, steps, lost - shear, work
@@ -164,14 +166,15 @@ def elastic(m, touch, number):
         area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
         if area == 0.0:
             continue
-        (rigid, held, shear), potential = hardness(m, touch, c, area), 0.0
+        (rigid, held, shear), potential, bend = hardness(m, touch, c, area), 0.0, tanks[c, BEND]
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
                 pressed = held * max(depth - slots[slot, CRUSHED], 0.0) ** 2
                 r, rolling = three(slots, slot, ROLL), coefficients(m, touch, pairs[c, A], pairs[c, B])[4]
                 rolled = 1.125 * rolling * rolling * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+                turned = 0.25 / math.pi * shear * slots[slot, AREA] * slots[slot, TWIST] ** 2 if bend == SPOT else 0.0
                 sheared = 0.5 * shear * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-                potential += rigid * slots[slot, AREA] * (pressed + sheared + rolled)
+                potential += rigid * slots[slot, AREA] * (pressed + sheared + rolled + turned)
         energy += min(potential, tanks[c, STORED])
     return energy

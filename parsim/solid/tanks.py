@@ -22,8 +22,9 @@ import numpy as np
 
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
+from parsim.solid.laws.kernels import coefficients
 from parsim.solid.motion import answer, foresee
-from parsim.solid.search import FIRST, KEY, LAST, ROLL, STRETCH, A, B
+from parsim.solid.search import CRUSHED, FIRST, KEY, LAST, STRETCH, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, INVOLVED, LIGHT, LOAD, LOSS, MEAN, ROLE, STIRRED, is_tied, three, turn_at
 
@@ -77,12 +78,14 @@ def load_pair(m, touch, c, potential, shear, loads, losses):
 def restrain(m, touch, which, rows, span):
     """Make loads smaller where in the coming kick of `span`, s, they would take more from a tank than it holds.
 
-    Leaves the MEAN of all bodies; returns the energy in friction springs, J. `which`: pairs, of these rows. 0.1 us a
-    pair that touches, where nothing is too large.
+    Leaves the MEAN of all bodies; returns the energy in friction springs, and what crushing has taken, J: what tanks
+    held that springs do not. `which`: pairs, of these rows. 0.1 us a pair that touches, where nothing is too large.
     """
-    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
+    pairs, shift, tanks, spent = touch.pairs, touch.shift, touch.tanks, 0.0
     for c in which:
-        tanks[c, STORED] = min(tanks[c, STORED], tanks[c, BEFORE] + tanks[c, NOW])
+        held = min(tanks[c, STORED], tanks[c, BEFORE] + tanks[c, NOW])
+        spent += tanks[c, STORED] - held if coefficients(m, touch, pairs[c, A], pairs[c, B])[5] < math.inf else 0.0
+        tanks[c, STORED] = held
     for b in rows:
         m[b, STIRRED] = 0.0
     rounds, over = 0, True
@@ -103,7 +106,7 @@ def restrain(m, touch, which, rows, span):
                     if b >= 0 and m[b, ROLE] == INVOLVED:
                         m[b, STIRRED] = rounds + 1.0
         rounds += 1
-    return _account(m, touch, which, span)
+    return _account(m, touch, which, span), spent
 
 
 @kernel
@@ -120,7 +123,7 @@ def _slacken(touch, c, share):
         tanks[c, k] *= share
     tanks[c, SHEAR] *= share * share
     for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
-        for k in range(STRETCH, ROLL + 3):
+        for k in range(STRETCH, CRUSHED):
             slots[slot, k] *= share
 
 

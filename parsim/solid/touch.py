@@ -1,13 +1,12 @@
 """Geometry of the pairs that may touch: depth, area and place of each of their elements."""
 
-import math
-
 from parsim.machine.jit import kernel
 from parsim.solid.cores import between_cores
 from parsim.solid.curves import curve_of, radius_of, spot_area
 from parsim.solid.faces import EXPECTED, against_plane, note, within
 from parsim.solid.hollows import in_field
 from parsim.solid.laws.law import FLAT, LINE
+from parsim.solid.overlap import faces_of, overlap
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, MIDDLE, POINT, A, B, above
 from parsim.solid.separation import (
     BALLS,
@@ -67,16 +66,32 @@ def measure(m, touch, c, n, apart):
         touch.slots[last, DEPTH] = touch.slots[last, AREA] = 0.0
         total = in_field(m, touch, (first, middle, a, b), (_NOWHERE, by), one)
         return total + in_field(m, touch, (middle, last, b, a), (by, _NOWHERE), -two)
-    ramp = ramp_of(m, a, b)
+    ramp, flat, faces = ramp_of(m, a, b), 0.0, (0, 0)
+    if curve[0] == FLAT:
+        faces, flat = faces_of(m, touch.forms, a, b, n)
     if pairs[c, FEATURE] < ROUND_A:
         tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
-    one, two = _shares(m, touch, a, b, n)
-    one, two = tanks[c, SHARE] * one, tanks[c, SHARE] * two
-    total = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one), curve)
-    total += within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two), curve)
+    narrow, (one, two) = flat + (1.0 - flat) * tanks[c, SHARE], _shares(m, touch, a, b, n)
+    one, two = narrow * one, narrow * two
+    total, shown = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one, flat), curve)
+    more = within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two, flat), curve)
+    total, shown = total + more[0], shown + more[1]
+    if flat > 0.0 and total > 0.0 and shown > 0.0:
+        exact = overlap(m, touch.forms, (a, b), by, n, faces)
+        total *= _scaled(touch.slots, first, last, 1.0 + flat * (exact / shown - 1.0))
     if pairs[c, FEATURE] == CORES:
         return total + _between(m, touch, c, apart, total)
     return total + _cross(m, touch, by, c, n, tanks[c, SHARE] * _of_edges(touch, b))
+
+
+@kernel
+def _scaled(slots, first, last, by):
+    """Take these elements for `by` times their area; returns `by`."""
+    for slot in range(first, last):
+        slots[slot, AREA] *= by
+        if slots[slot, AREA] == 0.0:
+            slots[slot, DEPTH] = 0.0
+    return by
 
 
 @kernel
@@ -152,7 +167,7 @@ def _between(m, touch, c, apart, total):
     if touch.tanks[c, BEND] != FLAT:
         area = spot_area((touch.tanks[c, BEND], touch.tanks[c, RADIUS]), -apart)
         if touch.tanks[c, BEND] == LINE:
-            area *= _shortest(touch.forms, a, b)
+            area *= _shortest(touch.forms, a, b, ramp_of(m, a, b))
     if touch.forms.planar or apart >= 0.0 or total >= area:
         return 0.0
     _, (x, y, z) = between_cores(m, touch.forms, a, b, between(m, a, b, by))
@@ -162,9 +177,8 @@ def _between(m, touch, c, apart, total):
 
 
 @kernel
-def _shortest(forms, a, b):
-    """Length, m, that one point along the side of a cylinder stands for, where a or b is one."""
-    short = math.inf
+def _shortest(forms, a, b, short):
+    """Length, m, that one point along the side of a cylinder stands for, where a or b is one, at most `short`, m."""
     for body in (a, b):
         if along_side(forms.shape[body]) > 1:
             short = min(short, forms.half[body, 2] / 3.0)

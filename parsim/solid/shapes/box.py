@@ -203,4 +203,4 @@ def depth(p, d, half, ramp, lateral):
             if half[i] + ahead < 0.0:
                 return 0.0, 0.0
             deep = min(deep, (half[i] - ahead) / abs(d[i]))
-    return deep, (weight if deep > 0.0 and weight > 0.0 else 0.0)
+    return deep, max(weight, 0.0)

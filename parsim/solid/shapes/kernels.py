@@ -33,6 +33,9 @@ _BOX, _SPHERE, _DISC, _POLYGON = (
     polygon.PolygonShape.NUMBER,
 )
 _CYLINDER, _DILATED, _MESH = cylinder.CylinderShape.NUMBER, dilated_disc.DilatedDiscShape.NUMBER, mesh.MeshShape.NUMBER
+_AROUND = 24
+_EVEN = math.sqrt(2.0 * math.pi / (_AROUND * math.sin(2.0 * math.pi / _AROUND)))  # of its radius: area of the circle
+START, LENGTH = polygon.START, polygon.LENGTH
 _ROUND = tuple(shape.NUMBER for shape in SHAPES if shape.ROUND)
 
 
@@ -143,7 +146,7 @@ def depth(forms, b, p, d, ramp):
     """(distance from point `p` along the unit vector `d` to the surface, m, weight).
 
     The point counts fully inside, less with its distance outside faces that lie along d (over `ramp`, m, so that a
-    sideways motion changes the force smoothly), else not at all: weight 0.
+    sideways motion changes the force smoothly), else not at all: weight 0. Above the surface the distance is negative.
     """
     shape, half = forms.shape[b], half_of(forms, b)
     if shape == _BOX:
@@ -158,7 +161,7 @@ def depth(forms, b, p, d, ramp):
     sides = _sides(forms, b)
     if shape == _POLYGON:
         deep, weight = _depth_polygon(p[0], p[2], d[0], d[2], sides, ramp, LATERAL)
-        return deep, (weight if deep > 0.0 and weight > 0.0 else 0.0)
+        return deep, max(weight, 0.0)
     return _depth_stood(
         _depth_polygon(p[0], p[1], d[0], d[1], sides, ramp, LATERAL), p[2], d[2], half[2], ramp, LATERAL
     )
@@ -183,6 +186,68 @@ def is_mesh(shape):
 
 
 @kernel
+def face_along(forms, b, d):
+    """(number of the flat face of body `b` that looks most along the unit vector `d` (3,), cosine of the angle); of a
+    mesh none: -1, 0. Of a box 2 axis + (1 if it looks ahead); of others 0, 1 the ends, 2 + k a side."""
+    shape = forms.shape[b]
+    if shape == _BOX:
+        a = 0
+        for k in range(1, 3):
+            if abs(d[k]) > abs(d[a]):
+                a = k
+        return 2 * a + (1 if d[a] > 0.0 else 0), abs(d[a])
+    face, cosine = (1 if d[2] > 0.0 else 0), abs(d[2])
+    if shape == _CYLINDER or shape == _DILATED:
+        return face, cosine
+    if shape == _SPHERE or shape == _DISC or shape == _MESH:
+        return -1, 0.0
+    sides, across = _sides(forms, b), d[1]
+    if shape == _POLYGON:
+        face, cosine, across = -1, 0.0, d[2]
+    for k in range(len(sides)):
+        along = sides[k, 0] * d[0] + sides[k, 1] * across
+        if along > cosine:
+            face, cosine = 2 + k, along
+    return face, cosine
+
+
+@kernel
+def corners_of(forms, b, face):
+    """How many corners such a face has; those that are round have a polygon of the same area."""
+    shape = forms.shape[b]
+    if shape == _CYLINDER or shape == _DILATED:
+        return _AROUND
+    return 4 if shape == _BOX or face > 1 else len(_sides(forms, b))
+
+
+@kernel
+def corner_of(forms, b, face, k):
+    """Corner `k` of such a face, in the order of its outline, m."""
+    shape, half = forms.shape[b], half_of(forms, b)
+    if shape == _BOX:
+        ahead, one, two = (1.0 if face % 2 else -1.0), (1.0 if k in (0, 3) else -1.0), (1.0 if k < 2 else -1.0)
+        if face < 2:
+            return ahead * half[0], one * half[1], two * half[2]
+        if face < 4:
+            return one * half[0], ahead * half[1], two * half[2]
+        return one * half[0], two * half[1], ahead * half[2]
+    end = half[2] if face == 1 else -half[2]
+    if shape == _CYLINDER or shape == _DILATED:
+        angle = 2.0 * math.pi * k / _AROUND
+        radius = _EVEN * (half[0] - (half[2] if shape == _DILATED else 0.0))
+        return radius * math.cos(angle), radius * math.sin(angle), end
+    sides = _sides(forms, b)
+    if face < 2:
+        return sides[k, START], sides[k, START + 1], end
+    u, v = sides[face - 2, START], sides[face - 2, START + 1]
+    if k in (1, 2):
+        u, v = u - sides[face - 2, 1] * sides[face - 2, LENGTH], v + sides[face - 2, 0] * sides[face - 2, LENGTH]
+    if shape == _POLYGON:
+        return u, (half[1] if k > 1 else -half[1]), v
+    return u, v, (half[2] if k > 1 else -half[2])
+
+
+@kernel
 def along_side(shape):
     """How many points of a body's curved side are watched as they move to where it touches: see `on_side`."""
     if shape == _CYLINDER:
@@ -191,17 +256,24 @@ def along_side(shape):
 
 
 @kernel
-def on_side(forms, b, k, d):
+def whole_side(forms, b):
+    """From where to where, m, along the axis of body `b` its side is."""
+    return -forms.half[b, 2], forms.half[b, 2]
+
+
+@kernel
+def on_side(forms, b, k, d, line):
     """(point k of the curved side that lies farthest along the unit vector `d` (3,), what of the side it stands for).
 
-    Of a cylinder the ends and the middle of the line, with the length that each stands for, m (Simpson); of a dilated
-    disc the point of the rim, with 1. Less where d is across the ends, which then touch with their elements.
+    Of a cylinder the ends and the middle of what touches of it, `line` from to, m, with the length that each stands
+    for, m (Simpson); of a dilated disc the point of the rim, with 1. Less where d is across the ends, which then touch
+    with their elements.
     """
     half, across = half_of(forms, b), math.sqrt(d[0] * d[0] + d[1] * d[1])
     x, y = (d[0] / across, d[1] / across) if across > 0.0 else (1.0, 0.0)
     if forms.shape[b] == _CYLINDER:
-        share = (1.0 if k != 1 else 4.0) / 3.0 * half[2]
-        return (half[0] * x, half[0] * y, (k - 1.0) * half[2]), share * across * across
+        share = (1.0 if k != 1 else 4.0) / 6.0 * (line[1] - line[0])
+        return (half[0] * x, half[0] * y, line[0] + 0.5 * k * (line[1] - line[0])), share * across * across
     flat = half[0] - half[2]
     return (flat * x + half[2] * d[0], flat * y + half[2] * d[1], half[2] * d[2]), min(across / LATERAL, 1.0)
 

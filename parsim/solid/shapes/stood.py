@@ -43,4 +43,4 @@ def depth(flat, z, dz, half, ramp, lateral):
         if half + side * z < 0.0:
             return 0.0, 0.0
         deep = min(deep, (half - side * z) / abs(dz))
-    return deep, (weight if deep > 0.0 and weight > 0.0 else 0.0)
+    return deep, max(weight, 0.0)
