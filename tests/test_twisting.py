@@ -11,6 +11,7 @@ from parsim.geometry.rotation import from_angles
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.laws import DEFAULT
+from parsim.solid.laws.impulse import ImpulseLaw
 from parsim.solid.shapes import BoxShape, DilatedDiscShape, SphereShape
 
 MU, RADIUS, MASS, SPIN = 0.4, 0.05, 0.5, 3.0
@@ -47,6 +48,17 @@ def test_a_ball_that_spins_on_a_floor_is_stopped_by_its_spot(law):
     go(bodies, contacts, 1e-3, 2000)
     assert np.abs(bodies.spin).max() < 1e-4
     assert np.abs(bodies.velocity).max() < 1e-9
+
+
+@pytest.mark.parametrize("rolling", [0.0, 0.1])
+def test_what_is_hard_is_stopped_by_rolling_friction(rolling):
+    """It touches at a point: I dw/dt = mu_r R m g, and nothing without."""
+    bodies = Bodies([BALL], [MASS], [(0.5, 0.5, RADIUS)])
+    contacts = settled(bodies, ImpulseLaw(kind="impulse"), rolling=rolling)
+    if rolling:
+        assert stops_after(bodies, contacts) == pytest.approx(0.4 * RADIUS * SPIN / (rolling * 9.81), abs=2e-3)
+    go(bodies, contacts, 1e-3, 500)
+    assert bodies.spin[0, 2] == pytest.approx(0.0 if rolling else SPIN, abs=1e-12)
 
 
 def test_hertz_has_the_spot_of_hertz():

@@ -2,9 +2,9 @@
 
 Found by sweeps over all points in the order of the pairs, there and back, each point taking what the others leave (a
 projected Gauss-Seidel scheme, Jean 1999, doi 10.1016/S0045-7825(98)00383-1): its normal impulse does not pull, its
-friction is at most mu times that and else stops the slip; rolling friction likewise, at most mu_r R times that. What is
-found takes energy or keeps it (Moreau 1988); where restitution with friction would give some, all points leave slower,
-together.
+friction is at most mu times that and else stops the slip; rolling friction likewise, at most mu_r R times that, also
+against turning on the spot, where what is hard touches at a point and friction has no arm. What is found takes energy
+or keeps it (Moreau 1988); where restitution with friction would give some, all points leave slower, together.
 """
 
 import math
@@ -200,14 +200,14 @@ def _relax(m, touch, points, k):
 
 @kernel
 def _roll(m, touch, points, k, normal):
-    """Stop what rolls at point k as far as its `normal` impulse, N s, can; by how much it has slowed, m/s."""
+    """Stop what rolls, or turns on its spot, at point k as far as its `normal` impulse, N s, can; by how much, m/s."""
     c = points.pair[k]
-    (p, q, r), n, t = three(m, touch.pairs[c, A], SPIN), three(points.normal, k, 0), three(points.spun, k, 0)
+    (p, q, r), t = three(m, touch.pairs[c, A], SPIN), three(points.spun, k, 0)
     if touch.pairs[c, B] >= 0:
         u, v, w = three(m, touch.pairs[c, B], SPIN)
         p, q, r = p - u, q - v, r - w
-    about, (arm, soft, radius) = p * n[0] + q * n[1] + r * n[2], three(points.rolls, k, 0)
-    x, y, z = t[0] - (p - about * n[0]) / soft, t[1] - (q - about * n[1]) / soft, t[2] - (r - about * n[2]) / soft
+    arm, soft, radius = three(points.rolls, k, 0)
+    x, y, z = t[0] - p / soft, t[1] - q / soft, t[2] - r / soft
     size = math.sqrt(x * x + y * y + z * z)
     if size > arm * normal:
         share = arm * normal / size
