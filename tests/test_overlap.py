@@ -11,7 +11,7 @@ from parsim.geometry.rotation import from_angles
 from parsim.solid.bodies import Bodies
 from parsim.solid.contacts import Contacts
 from parsim.solid.search import AREA, DEPTH, POINT
-from parsim.solid.shapes import BoxShape, CylinderShape, DilatedDiscShape, PrismShape
+from parsim.solid.shapes import BoxShape, CylinderShape, DilatedDiscShape, PolygonShape, PrismShape
 from parsim.solid.touch import measure, normal_of
 
 DEEP = 1e-4  # m
@@ -134,6 +134,81 @@ def test_faces_that_lie_flat_no_more_come_to_what_their_elements_say():
         for tilt in tilts
     ]
     assert max(abs(np.diff(areas))) < 0.4 * areas[0]
+
+
+def regular(count, across):
+    """Corners of a regular polygon, its first side below, `across`, m, from centre to side."""
+    angles = -0.5 * math.pi + math.pi / count * (2.0 * np.arange(count) - 1.0)
+    corners = across / math.cos(math.pi / count) * np.column_stack([np.cos(angles), np.sin(angles)])
+    return tuple(map(tuple, corners.tolist()))
+
+
+@pytest.mark.parametrize("count", [3, 5, 8, 12, 24, 64])
+@pytest.mark.parametrize("wide", [3.0, 0.05])
+def test_a_side_of_a_prism_lies_with_its_own_area(count, wide):
+    """On its side on a box, wider or narrower than it; neither the sides next to it nor the box's own elements add."""
+    shape = PrismShape(kind="prism", points=regular(count, 0.2), height=0.3)
+    under = BoxShape(kind="box", size=(wide, 3.0, 0.2))
+    area, volume, _ = touching([shape, under], [(0.0, 0.0, 0.3 - DEEP), (0.0,) * 3], [(90.0, 0.0, 0.0), (0.0,) * 3])
+    assert area == pytest.approx(0.3 * min(0.4 * math.tan(math.pi / count), wide), rel=1e-6)
+    assert volume == pytest.approx(DEEP * area, rel=1e-6)
+
+
+def test_sides_that_slope_outwards_above_do_not_touch():
+    shape = PrismShape(kind="prism", points=((-0.2, 0.0), (0.2, 0.0), (0.8, 0.5), (-0.8, 0.5)), height=0.3)
+    low = -float(shape.corners[:, 1].min())
+    bodies = [shape, BoxShape(kind="box", size=(3.0, 3.0, 0.2))]
+    area, _, centre = touching(bodies, [(0.05, 0.02, 0.1 + low - DEEP), (0.0,) * 3], [(90.0, 0.0, 0.0), (0.0,) * 3])
+    assert area == pytest.approx(0.4 * 0.3, rel=1e-6)
+    assert centre[:2] == pytest.approx([0.05, 0.02], abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [4, 5, 6, 8, 12])
+@pytest.mark.parametrize("shift", [0.0, 0.3, 0.7])
+def test_floes_touch_face_to_face_where_their_sides_overlap(count, shift):
+    """Upright, side to side, shifted along it by a share of its length; area and centre of the force are exact."""
+    floe = PrismShape(kind="prism", points=regular(count, 0.5), height=0.2)
+    side = math.tan(math.pi / count)
+    places = [(shift * side, 0.0, 0.04), (0.0, -1.0 + DEEP, 0.0)]
+    area, _, centre = touching([floe] * 2, places, [(0.0,) * 3, (0.0, 0.0, 180.0)])
+    assert area == pytest.approx((1.0 - shift) * side * 0.16, rel=1e-6)
+    assert centre[[0, 2]] == pytest.approx([0.5 * shift * side, 0.02], abs=1e-6)
+
+
+@pytest.mark.parametrize("lens", [0.1, 0.05])
+def test_what_overlaps_by_little_touches_by_little(lens):
+    """Two prisms on each other by a corner: less than one element stands for."""
+    floe = PrismShape(kind="prism", points=((-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2)), height=0.2)
+    places = [(0.4 - lens, 0.4 - lens, 0.2 - 1e-6), (0.0,) * 3]
+    area, _, _ = touching([floe] * 2, places, [(0.0,) * 3] * 2)
+    assert area == pytest.approx(lens * lens, rel=1e-5)
+
+
+@pytest.mark.parametrize("count", [5, 8, 24])
+def test_a_polygon_of_a_plane_lies_with_its_side(count):
+    """2D; on a box and on the floor."""
+    points, side = regular(count, 0.2), 0.4 * math.tan(math.pi / count)
+    shape = PolygonShape(kind="polygon", points=points)
+    under = BoxShape(kind="box", size=(3.0, 1.0, 0.2))
+    bodies = Bodies([shape, under], [1.0] * 2, [(0.01, 0.5, 0.3 - DEEP), (0.0, 0.5, 0.0)], planar=True)
+    for walls, pair in (((), bodies), (("z_min",), Bodies([shape], [1.0], [(0.5, 0.5, 0.2 - DEEP)], planar=True))):
+        given = case(walls=walls)
+        given.dimensions, given.axes = 2, (0, 2)
+        contacts = Contacts(pair, given)
+        contacts._prepare(pair, pair.fixed, 0.0, 0.01)
+        touch = contacts._touch()
+        apart, *n = normal_of(contacts._table, touch, 0)
+        assert measure(contacts._table, touch, 0, tuple(n), apart) == pytest.approx(side, rel=1e-6)
+
+
+def test_the_normal_of_a_tall_pier_is_level():
+    """A floe slides round a pier; forces do not jump as the nearest points of tall bodies are known to few digits."""
+    pier, floe = CylinderShape(kind="cylinder", diameter=0.4, height=3.0), BoxShape(kind="box", size=(1.0, 1.0, 0.2))
+    for across in np.linspace(0.45, 0.55, 41):
+        bodies = Bodies([pier, floe], [1.0] * 2, [(0.0,) * 3, (0.7 - 1e-3, float(across), 0.3)])
+        contacts = Contacts(bodies, case(walls=()))
+        if contacts._prepare(bodies, bodies.fixed, 0.0, 0.01)[0]:
+            assert abs(normal_of(contacts._table, contacts._touch(), 0)[3]) < 1e-12
 
 
 @pytest.mark.parametrize("height", [0.6, 3.0, 10.0])

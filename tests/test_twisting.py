@@ -90,6 +90,22 @@ def test_what_is_round_stops_on_a_block_as_on_the_floor(shape):
     assert times[1] == pytest.approx(times[0], rel=0.02)
 
 
+def test_a_spot_of_two_rims_is_one():
+    """Rim on rim of two discs: the torque of the whole spot, not of the halves that each of them stands for."""
+    disc = DilatedDiscShape(kind="dilated_disc", diameter=0.3, thickness=0.1)
+    turn = from_angles((90.0, 0.0, 0.0))
+    bodies = Bodies(
+        [disc] * 2, [10.0, MASS], [(0.5, 0.5, 0.2), (0.5, 0.5, 0.4999)], quaternion=[turn] * 2, fixed=[True, False]
+    )
+    contacts = Contacts(bodies, case(gravity=(0.0, 0.0, 0.0), **OPTIONS))
+    bodies.spin[1] = (0.0, 0.0, 50.0)
+    go(bodies, contacts, 1e-7, 50)
+    force, torque = bodies.contact_load[1, 2], bodies.contact_load[1, 5]
+    spot = math.sqrt(0.5 * math.sqrt(0.15 * 0.05) * (0.5 - bodies.position[1, 2]))
+    assert force > 0.0
+    assert torque == pytest.approx(-3.0 * math.pi / 16.0 * MU * force * spot, rel=0.02)
+
+
 def test_twisting_makes_no_energy_and_keeps_momentum():
     """Two balls pressed together that turn against each other, with nothing else."""
     bodies = Bodies(

@@ -28,7 +28,7 @@ from parsim.solid.search import (
 from parsim.solid.separation import BALLS, gap_of_balls
 from parsim.solid.speeds import add_rate
 from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, three
-from parsim.solid.tanks import BEFORE, LAPSE, LOADS, LOSSES, NOW, SHEAR, SHEAR_BEFORE
+from parsim.solid.tanks import BEFORE, LAPSE, LOADS, LOSSES, NOW, SHEAR, SHEAR_BEFORE, SPENT
 
 CALM = 0.25  # how far, over their depth, contacts at rest may still move
 
@@ -127,7 +127,10 @@ def _push(m, slot, tank, ab, n, law, now, planar):
     """The law for one pair with its slot and its tank; `now`: depth, m, age of its springs and span of the kick, s."""
     a, b = ab
     light, arm = lightness(m, a, b), _arms(m, a, b, now[0])
-    deep, slot[CRUSHED] = give_way(now[0], slot[CRUSHED], law[8] / law[2])
+    before = slot[CRUSHED]
+    deep, slot[CRUSHED] = give_way(now[0], before, law[8] / law[2])
+    if slot[CRUSHED] > before:
+        tank[SPENT] += law[8] * law[0] * (slot[CRUSHED] - before)
     now = deep, now[1], now[2]
     x, y, z = three(m, a, RUSH)
     if b >= 0:

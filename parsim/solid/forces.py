@@ -49,8 +49,8 @@ def press(m, touch, island, lapse, span):
     touching = press_balls(m, touch, which, lapse, span)
     for c in which:
         if touch.pairs[c, FEATURE] != BALLS:
-            count, stored, sheared, force, loss = load_of(m, touch, c, lapse, span)
-            load_pair(m, touch, c, stored, sheared, force, loss)
+            count, stored, sheared, force, loss, spent = load_of(m, touch, c, lapse, span)
+            load_pair(m, touch, c, stored, sheared, force, loss, spent)
             touching += count
     pull_and_date(m, touch, island, span)
     return touching
@@ -59,13 +59,13 @@ def press(m, touch, island, lapse, span):
 @kernel
 def load_of(m, touch, c, lapse, span):
     """Of pair `c`, no balls: (elements that touch, energy in its springs, in those of friction, J, its load on body a,
-    what of it dissipates; see `_sum`)."""
+    what of it dissipates, see `_sum`; energy that it has crushed since the last look, J)."""
     apart, x, y, z = normal_of(m, touch, c)
     area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
     if area == 0.0:
         for slot in range(touch.pairs[c, FIRST], touch.pairs[c, LAST] + 1):
             touch.marks[slot, TOUCHING] = 0
-        return 0, 0.0, 0.0, _NO_LOAD, _NO_LOAD
+        return 0, 0.0, 0.0, _NO_LOAD, _NO_LOAD, 0.0
     return _push(m, touch, c, (x, y, z), area, (lapse + touch.tanks[c, LAPSE] if span > 0.0 else 0.0, span))
 
 
@@ -137,10 +137,11 @@ def _push(m, touch, c, n, total, times):
     springs = rigid * _pressed_in(touch, first, last, strength / rigid) - _along(touch.tanks, c, n)
     dashpot /= 1.0 + 0.5 * times[1] * dashpot * total / effective
     ahead = times[0], 0.5 * times[1] * (_parting(m, a, b, n) + light * springs)
-    inert = 0.4 * effective * touch.tanks[c, RADIUS] ** 2 if touch.tanks[c, BEND] == SPOT else 0.0
-    law = rigid, dashpot, mu, held, shear, (rolling, touch.tanks[c, RADIUS], inert, own, strength)
-    touching, sheared, pressed, force, loss = _sum(touch, first, last, n, motion, ahead, law)
-    return touching, sheared + pressed, sheared, force, loss
+    radius, twists = touch.tanks[c, RADIUS], touch.tanks[c, BEND] == SPOT and not own
+    inert, (spot, stiff) = 0.4 * effective / total * radius * radius if twists else 0.0, of_spot(total, mu)
+    law = rigid, dashpot, mu, held, shear, (rolling, radius, own, strength), (inert, spot, stiff * shear * rigid)
+    touching, (sheared, pressed, spent), force, loss = _sum(touch, first, last, n, motion, ahead, law)
+    return touching, sheared + pressed, sheared, force, loss, spent
 
 
 @kernel
@@ -179,14 +180,15 @@ def _parting(m, a, b, n):
 
 @kernel
 def _sum(touch, first, last, n, motion, ahead, law):
-    """The law for each element of one pair: (touching, energy in friction, in foundations, load on a, its lossy part).
+    """The law for each element of one pair: (touching, (energy in friction, in foundations, crushed, J), load on a, its
+    lossy part).
 
     Both loads are six numbers: force and torque about the centre of body a. `ahead`: since the last call, s, and the
     speed that the pair will have gained by the middle of the kick, m/s.
     """
     marks, slots, (lapse, sooner) = touch.marks, touch.slots, ahead
-    rigid, dashpot, mu, held, shear, (rolling, radius, inert, own, strength) = law
-    count, stored, pressed, tangential = 0, 0.0, 0.0, math.sqrt(shear) * dashpot
+    rigid, dashpot, mu, held, shear, (rolling, radius, own, strength), (inert, spot, stiff) = law
+    count, stored, pressed, spent, tangential = 0, 0.0, 0.0, 0.0, math.sqrt(shear) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
     for slot in range(first, last + 1):
@@ -198,7 +200,10 @@ def _sum(touch, first, last, n, motion, ahead, law):
             n = three(slots, slot, NORMAL)
         x, y, z = slots[slot, POINT] - ox, slots[slot, POINT + 1] - oy, slots[slot, POINT + 2] - oz
         v = velocity_at(motion, x, y, z)
+        before = slots[slot, CRUSHED] if marks[slot, TOUCHING] else 0.0
         depth, slots[slot, CRUSHED] = _elastic_depth(touch, slot, strength / rigid)
+        if slots[slot, CRUSHED] > before:
+            spent += strength * area * (slots[slot, CRUSHED] - before)
         speed = v[0] * n[0] + v[1] * n[1] + v[2] * n[2] + sooner
         normal, elastic = normal_force(rigid, dashpot, area, depth, speed, strength)
         s, roll, twist, age = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
@@ -216,10 +221,8 @@ def _sum(touch, first, last, n, motion, ahead, law):
             tx, ty, tz = tx + t[0], ty + t[1], tz + t[2]
             ux, uy, uz = ux + t[0], uy + t[1], uz + t[2]
         if inert > 0.0:
-            spot, stiff = of_spot(area, mu)
             speed = motion[2][0] * n[0] + motion[2][1] * n[1] + motion[2][2] * n[2]
-            stiff *= shear * rigid * area
-            t, slots[slot, TWIST], more = twisting_torque(twist, speed, age, spot * normal, stiff, inert)
+            t, slots[slot, TWIST], more = twisting_torque(twist, speed, age, spot * normal, stiff * area, inert * area)
             energy += more
             tx, ty, tz = tx + t * n[0], ty + t * n[1], tz + t * n[2]
             ux, uy, uz = ux + t * n[0], uy + t * n[1], uz + t * n[2]
@@ -230,7 +233,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
         p, q, r = p - elastic * n[0], q - elastic * n[1], r - elastic * n[2]
         gx, gy, gz = gx + p, gy + q, gz + r
         ux, uy, uz = ux + (y * r - z * q), uy + (z * p - x * r), uz + (x * q - y * p)
-    return count, stored, pressed, (fx, fy, fz, tx, ty, tz), (gx, gy, gz, ux, uy, uz)
+    return count, (stored, pressed, spent), (fx, fy, fz, tx, ty, tz), (gx, gy, gz, ux, uy, uz)
 
 
 @kernel

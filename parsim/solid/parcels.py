@@ -14,7 +14,9 @@ from parsim.solid.substeps import span_of
 from parsim.solid.table import POSITION, QUATERNION, TIED, TOTAL
 from parsim.solid.tanks import KEPT, load_pair, restrain
 
-LOADS = 15  # numbers of the load of a pair: elements that touch, two energies, J, load and lossy load on body a
+LOADS = (
+    16  # numbers of the load of a pair: elements that touch, two energies, J, load and lossy load on body a, crushed, J
+)
 RATES = 4  # of its rate: normal, square of a frequency
 _BODY, _ISLAND, _GUEST = 25, 4, 6  # of a body that has moved, of its island, of a guest of that
 _MEMORY = NORMAL - STRETCH
@@ -31,7 +33,7 @@ def press_share(m, touch, rows, share, times, out):
     for i, c in enumerate(share):
         out[i] = 0.0
         if touch.pairs[c, FEATURE] != BALLS:
-            out[i, 0], out[i, 1], out[i, 2], force, loss = load_of(m, touch, c, times[0], times[1])
+            out[i, 0], out[i, 1], out[i, 2], force, loss, out[i, 15] = load_of(m, touch, c, times[0], times[1])
             for k in range(6):
                 out[i, 3 + k], out[i, 9 + k] = force[k], loss[k]
 
@@ -43,7 +45,7 @@ def take_loads(m, touch, island, found, times):
     touching = press_balls(m, touch, which, times[0], times[1])
     for i, c in enumerate(which):
         if touch.pairs[c, FEATURE] != BALLS:
-            load_pair(m, touch, c, found[i, 1], found[i, 2], _six(found, i, 3), _six(found, i, 9))
+            load_pair(m, touch, c, found[i, 1], found[i, 2], _six(found, i, 3), _six(found, i, 9), found[i, 15])
             touching += int(found[i, 0])
     pull_and_date(m, touch, island, times[1])
     return touching

@@ -9,13 +9,12 @@ from parsim.solid.forces import free_time, hardness, press
 from parsim.solid.heaps import advance_heap, is_heap
 from parsim.solid.islands import islands_of
 from parsim.solid.laws.kernels import coefficients
-from parsim.solid.laws.law import SPOT
 from parsim.solid.motion import alone, drift_driven, drift_involved, driven_now, kick_involved, set_back
 from parsim.solid.rates import longest_step
 from parsim.solid.search import AREA, CRUSHED, DEPTH, FIRST, LAST, ROLL, STRETCH, TWIST, A, B
 from parsim.solid.springs import held_by_springs, rate_springs
 from parsim.solid.table import LOAD, TOTAL, three
-from parsim.solid.tanks import BEND, LAPSE, SHEAR, STORED, restrain
+from parsim.solid.tanks import LAPSE, SHEAR, STORED, restrain
 from parsim.solid.touch import measure, normal_of
 
 
@@ -166,14 +165,14 @@ def elastic(m, touch, number):
         area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0
         if area == 0.0:
             continue
-        (rigid, held, shear), potential, bend = hardness(m, touch, c, area), 0.0, tanks[c, BEND]
+        (rigid, held, shear), potential = hardness(m, touch, c, area), 0.0
         for slot in range(pairs[c, FIRST], pairs[c, LAST] + 1):
             if slots[slot, DEPTH] > 0.0:
                 depth, s = slots[slot, DEPTH], three(slots, slot, STRETCH)
                 pressed = held * max(depth - slots[slot, CRUSHED], 0.0) ** 2
                 r, rolling = three(slots, slot, ROLL), coefficients(m, touch, pairs[c, A], pairs[c, B])[4]
                 rolled = 1.125 * rolling * rolling * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
-                turned = 0.25 / math.pi * shear * slots[slot, AREA] * slots[slot, TWIST] ** 2 if bend == SPOT else 0.0
+                turned = 0.25 / math.pi * shear * area * slots[slot, TWIST] ** 2
                 sheared = 0.5 * shear * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
                 potential += rigid * slots[slot, AREA] * (pressed + sheared + rolled + turned)
         energy += min(potential, tanks[c, STORED])

@@ -8,12 +8,12 @@ its forces become smaller. Kinetic energy and tanks together thus never grow, bu
 the geometry and the sub-step. Such accounts are known from haptic interfaces (Hannaford & Ryu 2002,
 doi 10.1109/70.988969).
 
-Columns of `tanks` (n, 24), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
+Columns of `tanks` (n, 25), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
 only dissipate over several kicks; SHEAR, J, that of its friction springs, and LAPSE, s, by which their stretch is
 behind the pose; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE; WORK of the pair's forces in this kick,
 J; LOADS and LOSSES (6 each), force and torque about the centre of body a, N and N m, and their dissipating part; SHARE
 of its stiffness that a narrow contact has; BEND, RADIUS, m, and DEEP, m, of what touches: how it is curved
-(`laws.law.FLAT` and so on), and how deep it is.
+(`laws.law.FLAT` and so on), and how deep it is; SPENT, by crushing since the kick before, J.
 """
 
 import math
@@ -22,14 +22,13 @@ import numpy as np
 
 from parsim.geometry.rotation import scaled
 from parsim.machine.jit import kernel
-from parsim.solid.laws.kernels import coefficients
 from parsim.solid.motion import answer, foresee
 from parsim.solid.search import CRUSHED, FIRST, KEY, LAST, STRETCH, A, B
 from parsim.solid.separation import between
 from parsim.solid.table import INVERSE, INVOLVED, LIGHT, LOAD, LOSS, MEAN, ROLE, STIRRED, is_tied, three, turn_at
 
 STORED, LOST, SHEAR, LAPSE, BEFORE, NOW, SHEAR_BEFORE, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 8, 14
-SHARE, BEND, RADIUS, DEEP = 20, 21, 22, 23
+SHARE, BEND, RADIUS, DEEP, SPENT = 20, 21, 22, 23, 24
 KEPT = 4  # columns, the first, that last from step to step
 ROUNDS, LAST_ROUND = 10, 100  # of making forces smaller that depend on each other: see `share_within`
 ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
@@ -37,7 +36,7 @@ ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at r
 
 def room_for_tanks(count):
     """Empty tanks of `count` pairs."""
-    return np.zeros((count, 24))
+    return np.zeros((count, 25))
 
 
 @kernel
@@ -64,9 +63,13 @@ def recall_tanks(touch, number, key, stored):
 
 
 @kernel
-def load_pair(m, touch, c, potential, shear, loads, losses):
-    """Let pair `c`, whose springs hold `potential`, J, `shear` of it, act on its bodies; loads are six numbers each."""
+def load_pair(m, touch, c, potential, shear, loads, losses, spent):
+    """Let pair `c`, whose springs hold `potential`, J, `shear` of it, act on its bodies; loads are six numbers each.
+
+    spent: what it has crushed since it was last looked at, J.
+    """
     tanks = touch.tanks
+    tanks[c, SPENT] += spent
     tanks[c, BEFORE], tanks[c, NOW] = tanks[c, NOW], potential
     tanks[c, SHEAR_BEFORE], tanks[c, SHEAR] = tanks[c, SHEAR], shear
     for k in range(6):
@@ -78,14 +81,14 @@ def load_pair(m, touch, c, potential, shear, loads, losses):
 def restrain(m, touch, which, rows, span):
     """Make loads smaller where in the coming kick of `span`, s, they would take more from a tank than it holds.
 
-    Leaves the MEAN of all bodies; returns the energy in friction springs, and what crushing has taken, J: what tanks
-    held that springs do not. `which`: pairs, of these rows. 0.1 us a pair that touches, where nothing is too large.
+    Leaves the MEAN of all bodies; returns the energy in friction springs, and what crushing has taken, J. `which`:
+    pairs, of these rows. 0.1 us a pair that touches, where nothing is too large.
     """
     pairs, shift, tanks, spent = touch.pairs, touch.shift, touch.tanks, 0.0
     for c in which:
-        held = min(tanks[c, STORED], tanks[c, BEFORE] + tanks[c, NOW])
-        spent += tanks[c, STORED] - held if coefficients(m, touch, pairs[c, A], pairs[c, B])[5] < math.inf else 0.0
-        tanks[c, STORED] = held
+        crushed, tanks[c, SPENT] = min(tanks[c, SPENT], tanks[c, STORED]), 0.0
+        tanks[c, STORED] = min(tanks[c, STORED] - crushed, tanks[c, BEFORE] + tanks[c, NOW])
+        spent += crushed
     for b in rows:
         m[b, STIRRED] = 0.0
     rounds, over = 0, True

@@ -1,12 +1,15 @@
 """Geometry of the pairs that may touch: depth, area and place of each of their elements."""
 
+import math
+
+from parsim.geometry.rotation import to_body
 from parsim.machine.jit import kernel
 from parsim.solid.cores import between_cores
 from parsim.solid.curves import curve_of, radius_of, spot_area
-from parsim.solid.faces import EXPECTED, against_plane, note, within
+from parsim.solid.faces import EXPECTED, against_plane, beside, note, within
 from parsim.solid.hollows import in_field
 from parsim.solid.laws.law import FLAT, LINE
-from parsim.solid.overlap import faces_of, overlap
+from parsim.solid.overlap import faces_of, fit
 from parsim.solid.search import AREA, DEPTH, FEATURE, FIRST, LAST, MIDDLE, POINT, A, B, above
 from parsim.solid.separation import (
     BALLS,
@@ -20,8 +23,8 @@ from parsim.solid.separation import (
     ramp_of,
     separation,
 )
-from parsim.solid.shapes.kernels import along_side
-from parsim.solid.table import CELL, HALF, POSITION, three
+from parsim.solid.shapes.kernels import along_side, whole_side
+from parsim.solid.table import CELL, HALF, POSITION, shape_of, three, turn_at
 from parsim.solid.tanks import BEND, DEEP, RADIUS, SHARE
 
 _NOWHERE = (0.0, 0.0, 0.0)
@@ -66,32 +69,18 @@ def measure(m, touch, c, n, apart):
         touch.slots[last, DEPTH] = touch.slots[last, AREA] = 0.0
         total = in_field(m, touch, (first, middle, a, b), (_NOWHERE, by), one)
         return total + in_field(m, touch, (middle, last, b, a), (by, _NOWHERE), -two)
-    ramp, flat, faces = ramp_of(m, a, b), 0.0, (0, 0)
-    if curve[0] == FLAT:
-        faces, flat = faces_of(m, touch.forms, a, b, n)
+    ramp, narrow = ramp_of(m, a, b), 1.0
     if pairs[c, FEATURE] < ROUND_A:
-        tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
-    narrow, (one, two) = flat + (1.0 - flat) * tanks[c, SHARE], _shares(m, touch, a, b, n)
-    one, two = narrow * one, narrow * two
-    total, shown = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one, flat), curve)
-    more = within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two, flat), curve)
-    total, shown = total + more[0], shown + more[1]
-    if flat > 0.0 and total > 0.0 and shown > 0.0:
-        exact = overlap(m, touch.forms, (a, b), by, n, faces)
-        total *= _scaled(touch.slots, first, last, 1.0 + flat * (exact / shown - 1.0))
+        narrow = tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
+    faces = faces_of(m, touch.forms, (a, b), by, n, curve[0] == FLAT)
+    one, two = _shares(m, touch, a, b, n)
+    total = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one, narrow, faces, False), curve)
+    total += within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two, narrow, faces, True), curve)
+    if faces.flat > 0.0 and total > 0.0:
+        total = fit(touch.slots, first, last, faces)
     if pairs[c, FEATURE] == CORES:
-        return total + _between(m, touch, c, apart, total)
-    return total + _cross(m, touch, by, c, n, tanks[c, SHARE] * _of_edges(touch, b))
-
-
-@kernel
-def _scaled(slots, first, last, by):
-    """Take these elements for `by` times their area; returns `by`."""
-    for slot in range(first, last):
-        slots[slot, AREA] *= by
-        if slots[slot, AREA] == 0.0:
-            slots[slot, DEPTH] = 0.0
-    return by
+        return total + _between(m, touch, c, n, apart, total, 1.0 - faces.flat)
+    return total + _cross(m, touch, by, c, n, narrow * _of_edges(touch, b))
 
 
 @kernel
@@ -153,11 +142,11 @@ def _cross(m, touch, by, c, n, share):
 
 
 @kernel
-def _between(m, touch, c, apart, total):
+def _between(m, touch, c, n, apart, total, share):
     """What bodies feel where edges cross between their elements: into the pair's last slot; its area, m2.
 
     It stands between the nearest points of the cores and fills up what `total`, m2, the elements feel, to what one of
-    them would; in a plane nothing crosses.
+    them would, or this share of it; in a plane nothing crosses.
     """
     slot, a, b = touch.pairs[c, LAST], touch.pairs[c, A], touch.pairs[c, B]
     by, slots = three(touch.shift, c, 0), touch.slots
@@ -167,22 +156,32 @@ def _between(m, touch, c, apart, total):
     if touch.tanks[c, BEND] != FLAT:
         area = spot_area((touch.tanks[c, BEND], touch.tanks[c, RADIUS]), -apart)
         if touch.tanks[c, BEND] == LINE:
-            area *= _shortest(touch.forms, a, b, ramp_of(m, a, b))
-    if touch.forms.planar or apart >= 0.0 or total >= area:
+            area *= _length(m, touch, c, n, ramp_of(m, a, b))
+    area = share * (area - total)
+    if touch.forms.planar or apart >= 0.0 or area <= 0.0:
         return 0.0
     _, (x, y, z) = between_cores(m, touch.forms, a, b, between(m, a, b, by))
     x, y, z = x + m[b, POSITION] + by[0], y + m[b, POSITION + 1] + by[1], z + m[b, POSITION + 2] + by[2]
-    note(slots, slot, -apart, area - total, x, y, z)
-    return area - total
+    note(slots, slot, -apart, area, x, y, z)
+    return area
 
 
 @kernel
-def _shortest(forms, a, b, short):
-    """Length, m, that one point along the side of a cylinder stands for, where a or b is one, at most `short`, m."""
-    for body in (a, b):
-        if along_side(forms.shape[body]) > 1:
-            short = min(short, forms.half[body, 2] / 3.0)
-    return short
+def _length(m, touch, c, n, short):
+    """Length, m, along which the side of a cylinder of pair `c` may touch an edge; `short` where its line crosses it.
+
+    Where the line misses the other body it lies beside an edge, along all of that.
+    """
+    a, b, least = touch.pairs[c, A], touch.pairs[c, B], math.inf
+    x, y, z = between(m, a, b, three(touch.shift, c, 0))
+    for body, other, sign in ((a, b, 1.0), (b, a, -1.0)):
+        if along_side(shape_of(m, body)) > 1:
+            t, s = turn_at(m, body), turn_at(m, other)
+            d = to_body(t, -sign * n[0], -sign * n[1], -sign * n[2])
+            pose = (sign * x, sign * y, sign * z), t, s
+            (low, high), hit = beside(touch.forms, (body, other), pose, d, whole_side(touch.forms, body))
+            least = min(least, short if hit else math.inf, high - low)
+    return least
 
 
 @kernel
@@ -204,7 +203,7 @@ def show(m, touch, c, n, apart):
     if b >= 0:
         against_plane(m, touch, (middle, last, b), by, (-n[0], -n[1], -n[2]), far, curve)
         if pairs[c, FEATURE] == CORES:
-            _between(m, touch, c, min(apart, -tanks[c, DEEP], -1e-300), 0.0)
+            _between(m, touch, c, n, min(apart, -tanks[c, DEEP], -1e-300), 0.0, 1.0)
         elif pairs[c, FEATURE] != FIELD:
             _cross(m, touch, by, c, n, 1.0)
     one, two = _shares(m, touch, a, b, n) if b >= 0 else (1.0, 0.0)

@@ -4,7 +4,7 @@ import math
 
 from parsim.geometry.field import field_ahead, field_distance
 from parsim.machine.jit import kernel
-from parsim.solid.shapes import SHAPES, box, cylinder, dilated_disc, disc, mesh, polygon, sphere, stood
+from parsim.solid.shapes import SHAPES, box, cylinder, dilated_disc, disc, mesh, polygon, prism, sphere, stood
 
 LATERAL = 0.1  # cosine below which a face lies along a direction and does not bound the depth
 
@@ -33,9 +33,7 @@ _BOX, _SPHERE, _DISC, _POLYGON = (
     polygon.PolygonShape.NUMBER,
 )
 _CYLINDER, _DILATED, _MESH = cylinder.CylinderShape.NUMBER, dilated_disc.DilatedDiscShape.NUMBER, mesh.MeshShape.NUMBER
-_AROUND = 24
-_EVEN = math.sqrt(2.0 * math.pi / (_AROUND * math.sin(2.0 * math.pi / _AROUND)))  # of its radius: area of the circle
-START, LENGTH = polygon.START, polygon.LENGTH
+_PRISM = prism.PrismShape.NUMBER
 _ROUND = tuple(shape.NUMBER for shape in SHAPES if shape.ROUND)
 
 
@@ -46,7 +44,8 @@ def half_of(forms, b):
 
 
 @kernel
-def _sides(forms, b):
+def sides_of(forms, b):
+    """Rows of the sides of body `b`: see `polygon.sides_table`."""
     return forms.sides[forms.first[b] : forms.first[b + 1]]
 
 
@@ -62,7 +61,7 @@ def distance(forms, b, p):
         high, u, v = _in_disc(p[0], p[2], half[0])
         return high, (u, 0.0, v)
     if shape == _POLYGON:
-        high, u, v = _in_polygon(p[0], p[2], _sides(forms, b))
+        high, u, v = _in_polygon(p[0], p[2], sides_of(forms, b))
         return high, (u, 0.0, v)
     if shape == _CYLINDER:
         return _distance_stood(_in_disc(p[0], p[1], half[0]), p[2], half[2])
@@ -70,7 +69,7 @@ def distance(forms, b, p):
         return _distance_dilated(p, half)
     if shape == _MESH:
         return field_distance(p, forms.field, forms.grid[b])
-    return _distance_stood(_in_polygon(p[0], p[1], _sides(forms, b)), p[2], half[2])
+    return _distance_stood(_in_polygon(p[0], p[1], sides_of(forms, b)), p[2], half[2])
 
 
 @kernel
@@ -85,7 +84,7 @@ def ahead(forms, b, p, n, behind):
         enter, leave = _across_disc(p[0], p[2], n[0], n[2], half[0])
         return max(enter, -behind) if max(enter, -behind) <= leave else math.inf
     if shape == _POLYGON:
-        enter, leave = _across_polygon(p[0], p[2], n[0], n[2], _sides(forms, b))
+        enter, leave = _across_polygon(p[0], p[2], n[0], n[2], sides_of(forms, b))
         return max(enter, -behind) if max(enter, -behind) <= leave else math.inf
     if shape == _CYLINDER:
         return _ahead_stood(_across_disc(p[0], p[1], n[0], n[1], half[0]), p[2], n[2], half[2], behind)
@@ -93,7 +92,7 @@ def ahead(forms, b, p, n, behind):
         return _ahead_dilated(p, n, half, behind)
     if shape == _MESH:
         return field_ahead(p, n, forms.field, forms.grid[b], behind)
-    return _ahead_stood(_across_polygon(p[0], p[1], n[0], n[1], _sides(forms, b)), p[2], n[2], half[2], behind)
+    return _ahead_stood(_across_polygon(p[0], p[1], n[0], n[1], sides_of(forms, b)), p[2], n[2], half[2], behind)
 
 
 @kernel
@@ -107,12 +106,12 @@ def reach(forms, b, d):
     if shape == _DISC:
         return half[0] * math.sqrt(d[0] * d[0] + d[2] * d[2])
     if shape == _POLYGON:
-        return _reach_polygon(d[0], d[2], _sides(forms, b))
+        return _reach_polygon(d[0], d[2], sides_of(forms, b))
     if shape == _CYLINDER:
         return half[0] * math.sqrt(d[0] * d[0] + d[1] * d[1]) + half[2] * abs(d[2])
     if shape == _DILATED:
         return (half[0] - half[2]) * math.sqrt(d[0] * d[0] + d[1] * d[1]) + half[2]
-    return _reach_polygon(d[0], d[1], _sides(forms, b)) + half[2] * abs(d[2])
+    return _reach_polygon(d[0], d[1], sides_of(forms, b)) + half[2] * abs(d[2])
 
 
 @kernel
@@ -128,7 +127,7 @@ def core(forms, b, d):
     if shape == _SPHERE or shape == _DISC:
         return 0.0, 0.0, 0.0
     if shape == _POLYGON:
-        x, z = _core_polygon(d[0], d[2], _sides(forms, b))
+        x, z = _core_polygon(d[0], d[2], sides_of(forms, b))
         return x, 0.0, z
     up = half[2] - margin if d[2] > 0.0 else margin - half[2]
     if shape == _CYLINDER:
@@ -137,7 +136,7 @@ def core(forms, b, d):
     if shape == _DILATED:
         x, y = _core_disc(d[0], d[1], half[0] - half[2])
         return x, y, 0.0
-    x, y = _core_polygon(d[0], d[1], _sides(forms, b))
+    x, y = _core_polygon(d[0], d[1], sides_of(forms, b))
     return x, y, up
 
 
@@ -158,7 +157,7 @@ def depth(forms, b, p, d, ramp):
     if shape == _DILATED or shape == _SPHERE or shape == _DISC or shape == _MESH:
         deep = -distance(forms, b, p)[0]
         return deep, (1.0 if deep > 0.0 else 0.0)
-    sides = _sides(forms, b)
+    sides = sides_of(forms, b)
     if shape == _POLYGON:
         deep, weight = _depth_polygon(p[0], p[2], d[0], d[2], sides, ramp, LATERAL)
         return deep, max(weight, 0.0)
@@ -183,68 +182,6 @@ def is_box(shape):
 def is_mesh(shape):
     """Whether a shape is a mesh, which may be hollow: it has no core."""
     return shape == _MESH
-
-
-@kernel
-def face_along(forms, b, d):
-    """(number of the flat face of body `b` that looks most along the unit vector `d` (3,), cosine of the angle); of a
-    mesh none: -1, 0. Of a box 2 axis + (1 if it looks ahead); of others 0, 1 the ends, 2 + k a side."""
-    shape = forms.shape[b]
-    if shape == _BOX:
-        a = 0
-        for k in range(1, 3):
-            if abs(d[k]) > abs(d[a]):
-                a = k
-        return 2 * a + (1 if d[a] > 0.0 else 0), abs(d[a])
-    face, cosine = (1 if d[2] > 0.0 else 0), abs(d[2])
-    if shape == _CYLINDER or shape == _DILATED:
-        return face, cosine
-    if shape == _SPHERE or shape == _DISC or shape == _MESH:
-        return -1, 0.0
-    sides, across = _sides(forms, b), d[1]
-    if shape == _POLYGON:
-        face, cosine, across = -1, 0.0, d[2]
-    for k in range(len(sides)):
-        along = sides[k, 0] * d[0] + sides[k, 1] * across
-        if along > cosine:
-            face, cosine = 2 + k, along
-    return face, cosine
-
-
-@kernel
-def corners_of(forms, b, face):
-    """How many corners such a face has; those that are round have a polygon of the same area."""
-    shape = forms.shape[b]
-    if shape == _CYLINDER or shape == _DILATED:
-        return _AROUND
-    return 4 if shape == _BOX or face > 1 else len(_sides(forms, b))
-
-
-@kernel
-def corner_of(forms, b, face, k):
-    """Corner `k` of such a face, in the order of its outline, m."""
-    shape, half = forms.shape[b], half_of(forms, b)
-    if shape == _BOX:
-        ahead, one, two = (1.0 if face % 2 else -1.0), (1.0 if k in (0, 3) else -1.0), (1.0 if k < 2 else -1.0)
-        if face < 2:
-            return ahead * half[0], one * half[1], two * half[2]
-        if face < 4:
-            return one * half[0], ahead * half[1], two * half[2]
-        return one * half[0], two * half[1], ahead * half[2]
-    end = half[2] if face == 1 else -half[2]
-    if shape == _CYLINDER or shape == _DILATED:
-        angle = 2.0 * math.pi * k / _AROUND
-        radius = _EVEN * (half[0] - (half[2] if shape == _DILATED else 0.0))
-        return radius * math.cos(angle), radius * math.sin(angle), end
-    sides = _sides(forms, b)
-    if face < 2:
-        return sides[k, START], sides[k, START + 1], end
-    u, v = sides[face - 2, START], sides[face - 2, START + 1]
-    if k in (1, 2):
-        u, v = u - sides[face - 2, 1] * sides[face - 2, LENGTH], v + sides[face - 2, 0] * sides[face - 2, LENGTH]
-    if shape == _POLYGON:
-        return u, (half[1] if k > 1 else -half[1]), v
-    return u, v, (half[2] if k > 1 else -half[2])
 
 
 @kernel
@@ -285,6 +222,12 @@ def curvature_radius(forms, b):
     if shape == _DILATED:
         return math.sqrt(half[0] * half[2])
     return half[0] if shape == _CYLINDER or shape in _ROUND else 0.0
+
+
+@kernel
+def stands_upright(shape):
+    """Whether a shape is an outline with a height (`stood`)."""
+    return shape == _CYLINDER or shape == _PRISM
 
 
 @kernel
