@@ -187,7 +187,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
     speed that the pair will have gained by the middle of the kick, m/s.
     """
     marks, slots, (lapse, sooner) = touch.marks, touch.slots, ahead
-    rigid, dashpot, mu, held, shear, (rolling, radius, own, strength), (inert, spot, stiff) = law
+    rigid, dashpot, mu, held, shear, (rolling, radius, own, strength), (inert, spot, about) = law
     count, stored, pressed, spent, tangential = 0, 0.0, 0.0, 0.0, math.sqrt(shear) * dashpot
     fx = fy = fz = tx = ty = tz = gx = gy = gz = ux = uy = uz = 0.0
     ox, oy, oz = motion[0]
@@ -222,7 +222,7 @@ def _sum(touch, first, last, n, motion, ahead, law):
             ux, uy, uz = ux + t[0], uy + t[1], uz + t[2]
         if inert > 0.0:
             speed = motion[2][0] * n[0] + motion[2][1] * n[1] + motion[2][2] * n[2]
-            t, slots[slot, TWIST], more = twisting_torque(twist, speed, age, spot * normal, stiff * area, inert * area)
+            t, slots[slot, TWIST], more = twisting_torque(twist, speed, age, spot * normal, about * area, inert * area)
             energy += more
             tx, ty, tz = tx + t * n[0], ty + t * n[1], tz + t * n[2]
             ux, uy, uz = ux + t * n[0], uy + t * n[1], uz + t * n[2]
