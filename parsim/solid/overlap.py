@@ -21,7 +21,7 @@ from parsim.solid.table import POSITION, pose_of, turn_at
 
 _FLAT = 0.5 * LATERAL  # sine of the angle between a face and the normal up to which it lies flat
 _SAME = 1e-9  # of its size, by which an outline is made smaller: edges that coincide count once
-_EVEN = 1e-6  # ratio of the axes of an area below which it is a line
+_EVEN = 1e-6  # ratio of the axes of an area below which it is a line; of its spread, below which it is a point
 _SUMS = 6  # area and its first and second moments
 
 
@@ -89,12 +89,13 @@ def fit(slots, first, last, faces):
     sums, exact, total = faces.moments, np.zeros(3), 0.0
     _around(faces.outline, faces.other, _SAME, exact)
     _around(faces.other, faces.outline, -_SAME, exact)
-    even = exact[0] / sums[0] if sums[0] > 0.0 else 0.0
+    even = exact[0] / sums[0] if exact[0] > 0.0 < sums[0] else 0.0
     p, q = sums[1] / max(sums[0], 1e-300), sums[2] / max(sums[0], 1e-300)
     slope_p, slope_q = 0.0, 0.0
     if even > 0.0:
         pp, pq, qq = sums[3] / sums[0] - p * p, sums[4] / sums[0] - p * q, sums[5] / sums[0] - q * q
-        slope_p, slope_q = _slopes(exact[1] / exact[0] - p, exact[2] / exact[0] - q, pp, pq, qq)
+        if pp + qq > _EVEN * exact[0]:
+            slope_p, slope_q = _slopes(exact[1] / exact[0] - p, exact[2] / exact[0] - q, pp, pq, qq)
     least = 0.0
     for slot in range(first, last):
         if slots[slot, DEPTH] > 0.0:
@@ -118,8 +119,6 @@ def _slopes(p, q, pp, pq, qq):
     det, trace = pp * qq - pq * pq, pp + qq
     if det > _EVEN * trace * trace:
         return (qq * p - pq * q) / det, (pp * q - pq * p) / det
-    if trace == 0.0:
-        return 0.0, 0.0
     return (p / pp, 0.0) if pp > qq else (0.0, q / qq)
 
 
