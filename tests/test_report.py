@@ -248,6 +248,8 @@ def test_a_two_dimensional_run_and_a_stopped_one(run, tmp_path):
     (tmp_path / "stopped/case.toml").write_text('title = "Stopped"\n')
     (tmp_path / "stopped/series/energy.csv").write_text("# units: -, s, J\nstep,time,total\n")
     assert "Status: unknown" in check_page(build(tmp_path / "stopped"), figures=0)
+    (tmp_path / "stopped/run.json").write_text('{"status": "failed", "error": "RunError: a particle < all has left"}')
+    assert "It ended with: RunError: a particle &lt; all has left" in check_page(build(tmp_path / "stopped"), figures=0)
 
 
 def test_a_gif_replaces_a_missing_encoder(run, monkeypatch):

@@ -122,6 +122,18 @@ def with_floes(case):
     return case.model_copy(update={"bodies": (*case.bodies, *new, *waiting), "ice": ice}), faults + wrong
 
 
+def undrawn(case):
+    """A completed case without the floes of its fields and supplies, which what these say gives it anew."""
+    every = *case.ice.fields, *case.ice.supplies
+    drawn = {body.name for given in every for body in floes_of(case, given)}
+    fields, supplies = (
+        tuple(given.model_copy(update={"floes": None}) for given in some)
+        for some in (case.ice.fields, case.ice.supplies)
+    )
+    ice = case.ice.model_copy(update={"fields": fields, "supplies": supplies})
+    return case.model_copy(update={"bodies": tuple(b for b in case.bodies if b.name not in drawn), "ice": ice})
+
+
 def _supplied(case):
     """(The supplies of a case, completed; the bodies that wait to come in, yet to float at the inlet; messages)."""
     supplies, bodies = [], []
@@ -173,6 +185,12 @@ def doubts(case):
             yield (
                 f"{field.KEY}.{field.name}: {len(few)} of {len(widths)} floes have fewer than four particles across "
                 f"their thinnest side, {min(few):.6g} m at least; four or more give usable loads"
+            )
+    for given in case.ice.supplies:
+        if given.ends is None and (last := supply.lasts_to(case, given)) < case.run.until:
+            yield (
+                f"{given.KEY}.{given.name}: has floes to the end that the run first had, about {last:.4g} s, and none "
+                f"from there to run.until = {case.run.until!r}; a supply that is given `ends` lasts to that"
             )
 
 

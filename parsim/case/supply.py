@@ -60,6 +60,18 @@ def _wanted(case, supply):
     return total * (_MORE if supply.discharge is None else 1.0)
 
 
+def lasts_to(case, supply):
+    """Until when, s, the floes that a supply has are enough; at most the end of the run."""
+    have, low, high = supply.floes or 0, supply.begins, case.run.until
+    if len(floes(case, supply)) <= have:
+        return high
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        enough = len(floes(case, supply.model_copy(update={"ends": middle}))) <= have
+        low, high = (middle, high) if enough else (low, middle)
+    return low
+
+
 def _asked(case, supply):
     """The function of time, s, that gives its `rate` in the water that the case asks for, as if it never ended."""
     if supply.discharge is not None:
@@ -115,6 +127,8 @@ def _wrong(case, supply):
         yield from wrong_course("discharge", supply.discharge)
         if (lowest := least(supply.discharge)) < 0.0:
             yield f"discharge = {lowest:g}: must be 0 or more; ice comes in"
+    if supply.begins >= case.run.until:
+        yield f"begins = {supply.begins!r}: must be before the end of the run, run.until = {case.run.until!r} s"
     if supply.ends is not None and supply.ends <= supply.begins:
         yield f"ends = {supply.ends!r}: must be after begins = {supply.begins!r} s"
     if supply.floes is not None:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from parsim import __version__, terrain
-from parsim.case import examples, file, model
+from parsim.case import examples, file, ice, model
 from parsim.commands.new_reach import Asked, new_reach
 from parsim.errors import InputError, WriteError, suggestion
 
@@ -20,7 +20,9 @@ def new_case(name: str | None, example: str | None = None, asked: Asked = Asked(
         new_reach(name, Path(example), asked)
         return
     if asked != Asked():
-        raise InputError(f"--from {example}: stations, spacing, level, reach and scale belong to a file of ground")
+        raise InputError(
+            f"--from: is {example or 'not given'}; stations, spacing, level, reach and scale belong to a file of ground"
+        )
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if not path.name.removesuffix(".toml").strip("."):
         raise InputError(f"NAME = {name!r}: is no name of a file; give the name of the case to write, such as flume")
@@ -47,8 +49,15 @@ def _text(example):
     schema = starter.split("\n", 1)[0]
     return (
         f"{schema}\n# From the example {example} of parsim {__version__}, with every value written out.\n"
-        + model.load(known[example]).to_toml()
+        + ice.undrawn(model.load(known[example])).to_toml()
+        + _study(known[example])
     )
+
+
+def _study(path):
+    """The study of an example, as its file has it."""
+    given = file.read(path).get("study")
+    return "\n" + file.written({"study": given}) if given else ""
 
 
 def show() -> None:

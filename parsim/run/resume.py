@@ -88,9 +88,10 @@ def _ends(run, until):
 def _check_wanted(folder, wanted, data):
     changed = changed_keys(wanted, data)
     if changed:
+        hint = "; a supply without `ends` has floes to the end of the run, so that a later end gives it others"
         raise InputError(
             f"OUT = {folder}: is the run of another case, which differs in {', '.join(changed)}; give a "
-            "changed case a folder of its own"
+            f"changed case a folder of its own{hint if 'ice.supplies' in changed else ''}"
         )
 
 

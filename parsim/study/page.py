@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from parsim.case.file import inline
 from parsim.output.frames import write_text
 from parsim.report.curves import ACCENT, FAINT, INK, WATER, figure
-from parsim.report.page import listing, page, picture, section, table
+from parsim.report.page import listing, page, picture, section, table, text
 from parsim.study.result import Result, shown
 from parsim.study.statistics import wilson
 from parsim.study.table import cells
@@ -26,7 +27,7 @@ def write(found: Result, title: str, out: Path) -> Path:
     _drawing(found).savefig(drawn, format="png", dpi=_DOTS)
     parts = [
         listing(_doubts(found), "warnings"),
-        section(_asked(found), *_tables(found)),
+        section(_asked(found), f"<p>{text(outcome(found))}</p>", *_tables(found)),
         picture(drawn.getvalue(), "png", "the same as a picture", _caption(found)),
         section("All runs", _runs(found)),
     ]
@@ -39,6 +40,11 @@ def counted(found: Result) -> str:
     """How many runs there are of each state, in words."""
     told = [f"{count} {state}" for state, count in found.counts.items()]
     return f"{len(found.runs)} runs: {', '.join(told)}" + ("" if found.complete else "; more are wanted")
+
+
+def outcome(found: Result) -> str:
+    """What each run is asked, as the study has it."""
+    return f"Of each run: {inline(found.study.outcome.model_dump(exclude_none=True))}"
 
 
 def lines(found: Result) -> list[str]:

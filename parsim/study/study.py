@@ -109,7 +109,7 @@ def _told(asked, planned, runs):
     results.write(found, runs)
     title = file.read(runs.case).get("title") or runs.case.stem
     path = page.write(found, f"Study: {title}", runs.out)
-    print(*page.lines(found), sep="\n")
+    print(page.outcome(found), *page.lines(found), sep="\n")
     print(f"{page.counted(found)}\npage: {path}", flush=True)
     silent = found.counts[NO_OUTCOME] and not any(row.outcomes for row in found.rows)
     no_edge = any(row.edge and row.edge.note for row in found.rows)

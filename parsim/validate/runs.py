@@ -58,6 +58,8 @@ def validate(
     missed = [row for row in rows if not row["passed"]]
     new = [row for row in missed if (row["case"], row["quantity"]) not in excused]
     if not as_json:
+        if not rows:
+            print("nothing was compared: what is asked for has no bars, or not at this level")
         before = f", {len(missed) - len(new)} of them as in {known}" if known else ""
         print(f"{len(rows) - len(missed)} of {len(rows)} bars met, {len(missed)} missed{before}")
     return MISSED if new else 0

@@ -21,6 +21,8 @@ def lines(run: Run) -> list[str]:
     """Status, size and time."""
     info = run.info
     told = [f"Status: {info.get('status', 'unknown')}."]
+    if error := info.get("error"):
+        told.append(f"It ended with: {error}")
     if "steps" in info and "time" in info:
         told.append(
             f"Simulated to {info['time']:.4g} s in {info['steps']} steps: {wall_time(run):.4g} s of "
