@@ -218,6 +218,7 @@ def come_to_rest(case):
 
 
 SHORT = {
+    20: "0.43 of a spacing: boxes of 82 and 183 kg/m3, a third of a particle and one deep, ride that much too high",
     35: "1.7 spacings: it lies on another body, and a drop on its deck raises the one head that its films have",
     47: "0.46 of a spacing by heads, which stand over the surface between three bodies; by the surface 0.2",
 }
