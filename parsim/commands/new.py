@@ -20,9 +20,8 @@ def new_case(name: str | None, example: str | None = None, asked: Asked = Asked(
         new_reach(name, Path(example), asked)
         return
     if asked != Asked():
-        raise InputError(
-            f"--from: is {example or 'not given'}; stations, spacing, level, reach and scale belong to a file of ground"
-        )
+        given = f"--from {example}" if example else "--from GROUND: missing"
+        raise InputError(f"{given}: stations, spacing, level, reach and scale belong to a file of ground")
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if not path.name.removesuffix(".toml").strip("."):
         raise InputError(f"NAME = {name!r}: is no name of a file; give the name of the case to write, such as flume")

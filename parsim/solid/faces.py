@@ -86,16 +86,16 @@ def within(m, touch, which, by, n, rim, curve):
     """The same against another body, depths along `n`; elements at the rim of the contact count less.
 
     `which`: (first, last, body, other); `by`: how far the two are moved; `rim`: width, m, of the rim, share of all, the
-    same of a narrow contact, the `overlap.Faces` of the pair, to whose moments it adds, whether the body is their
-    second. Where two faces lie on each other their own elements count, as far as they are beside the other face and
-    as deep as that is along `n`. What lies above the other along `n` is not in it: most elements, and told by one
-    product; the others take 0.1 us.
+    same of a narrow contact, how deep the pair is, m, its `overlap.Faces`, to whose moments it adds, whether the body
+    is their second. Where two faces lie on each other their own elements count, as far as they are beside the other
+    face and as deep as that is along `n`. What lies above the other along `n` is not in it: most elements, and told by
+    one product; the others take 0.1 us.
     """
     marks, slots, elements = touch.marks, touch.slots, touch.elements
     first, last, body, other = which
     (cx, cy, cz), t = pose_of(m, body, by[0])
     (bx, by_, bz), s = pose_of(m, other, by[1])
-    (ramp, share, narrow, faces, second), box = rim, is_box(shape_of(m, body))
+    (ramp, share, narrow, deepest, faces, second), box = rim, is_box(shape_of(m, body))
     u, v, w = to_body(t, n[0], n[1], n[2])
     along, total, flat = to_body(s, n[0], n[1], n[2]), 0.0, faces.flat
     top = n[0] * (bx - cx) + n[1] * (by_ - cy) + n[2] * (bz - cz) + reach(touch.forms, other, along)
@@ -135,7 +135,8 @@ def within(m, touch, which, by, n, rim, curve):
             _add(faces.moments, face, p, q)
             flush = under[3] - under[0] * own_x - under[1] * own_y - under[2] * own_z
             if face > 0.0 and flush > 0.0:
-                deep, area = flush, area + flat * face
+                more, whole = flat * face, area + flat * face
+                deep, area = (area * deep + more * min(flush, deepest)) / whole, whole
         note(slots, slot, deep if area > 0.0 else 0.0, area, x, y, z)
         total += area
     return total

@@ -2,9 +2,9 @@
 
 Elements tell how deep; counted by those within the other body their area is off by up to half their distance at each
 side: for bodies of 2 to 5 elements a side 0.84 to 1.8 times what it is. Their areas are therefore weighted so that they
-have the area of the overlap, and its centre. That comes from cutting convex outlines by each other (Cyrus & Beck 1978,
-doi 10.1016/0097-8493(78)90021-3): what is left of the edges of both goes around the overlap, and Green's theorem gives
-its moments. 0.5 us for two rectangles.
+have the area of the overlap, and its centre as far as none of them comes to pull. That comes from cutting convex
+outlines by each other (Cyrus & Beck 1978, doi 10.1016/0097-8493(78)90021-3): what is left of the edges of both goes
+around the overlap, and Green's theorem gives its moments. 0.5 us for two rectangles.
 """
 
 import math

@@ -74,8 +74,10 @@ def measure(m, touch, c, n, apart):
         narrow = tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
     faces = faces_of(m, touch.forms, (a, b), by, n, curve[0] == FLAT)
     one, two = _shares(m, touch, a, b, n)
-    total = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, (ramp, one, narrow, faces, False), curve)
-    total += within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, (ramp, two, narrow, faces, True), curve)
+    rim_a = ramp, one, narrow, tanks[c, DEEP], faces, False
+    rim_b = ramp, two, narrow, tanks[c, DEEP], faces, True
+    total = within(m, touch, (first, middle, a, b), (_NOWHERE, by), n, rim_a, curve)
+    total += within(m, touch, (middle, last, b, a), (by, _NOWHERE), opposite, rim_b, curve)
     if faces.flat > 0.0 and total > 0.0:
         total = fit(touch.slots, first, last, faces)
     if pairs[c, FEATURE] == CORES:
