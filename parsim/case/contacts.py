@@ -82,9 +82,11 @@ def unknown_material(name, known):
 
 def doubts(case):
     """What is allowed but doubtful in contacts: messages."""
+    again = period(case)
+    if not np.isfinite(again).any():
+        return
     reach = np.array([of_body(body).reach for body in case.bodies]).reshape(-1, 3)
-    for axis, length in zip("xyz", period(case), strict=True):
-        along = reach[:, "xyz".index(axis)]
+    for axis, along, length in zip("xyz", reach.T, again, strict=True):
         some = np.argsort(along)[-2:]
         if len(some) == 2 and (both := 2.0 * along[some].sum()) > length:
             one, two = (case.bodies[k].name for k in some[::-1])
