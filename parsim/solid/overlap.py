@@ -4,7 +4,7 @@ Elements tell how deep; counted by those within the other body their area is off
 side: for bodies of 2 to 5 elements a side 0.84 to 1.8 times what it is. Their areas are therefore weighted so that they
 have the area of the overlap, and its centre as far as none of them comes to pull. That comes from cutting convex
 outlines by each other (Cyrus & Beck 1978, doi 10.1016/0097-8493(78)90021-3): what is left of the edges of both goes
-around the overlap, and Green's theorem gives its moments. 0.5 us for two rectangles.
+around the overlap, and Green's theorem gives its moments. 1 us for two rectangles, of 4 that their pair takes.
 """
 
 import math
@@ -20,7 +20,7 @@ from parsim.solid.shapes.kernels import LATERAL
 from parsim.solid.table import POSITION, pose_of, turn_at
 
 _FLAT = 0.5 * LATERAL  # sine of the angle between a face and the normal up to which it lies flat
-_SAME = 1e-9  # of its size, by which an outline is made smaller: edges that coincide count once
+_SAME = 1e-9  # of its size, by which one outline is made larger, the other smaller: edges that coincide count once
 _EVEN = 1e-6  # ratio of the axes of an area below which it is a line; of its spread, below which it is a point
 _SUMS = 6  # area and its first and second moments
 

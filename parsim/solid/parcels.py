@@ -14,9 +14,7 @@ from parsim.solid.substeps import span_of
 from parsim.solid.table import POSITION, QUATERNION, TIED, TOTAL
 from parsim.solid.tanks import KEPT, load_pair, restrain
 
-LOADS = (
-    16  # numbers of the load of a pair: elements that touch, two energies, J, load and lossy load on body a, crushed, J
-)
+LOADS = 16  # numbers of the load of a pair: elements that touch, two energies, load and lossy load on body a, crushed
 RATES = 4  # of its rate: normal, square of a frequency
 _BODY, _ISLAND, _GUEST = 25, 4, 6  # of a body that has moved, of its island, of a guest of that
 _MEMORY = NORMAL - STRETCH
