@@ -41,7 +41,7 @@ def test_damping_gives_the_restitution_of_the_oscillator():
 def test_a_dropped_block_rebounds_by_its_restitution(pose, restitution):
     measured, kept, _ = drop(pose, restitution=restitution)
     assert measured == pytest.approx(restitution, rel=0.05)
-    assert kept == pytest.approx(1.0, abs=0.008)
+    assert kept == pytest.approx(1.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("spacing", [0.04, 0.01, 0.003])
@@ -57,14 +57,14 @@ def test_halving_substeps_converges():
         measured, kept, _ = drop(FLAT, restitution=0.5, steps=steps)
         errors.append((abs(measured - 0.5), abs(kept - 1.0)))
     assert errors[0][0] > 1.7 * errors[1][0] > 1.7**2 * errors[2][0]  # dashpots lag by half a sub-step: order one
-    assert errors[0][1] > 3.0 * errors[1][1] > 9.0 * errors[2][1]
+    assert max(kept for _, kept in errors) < 1e-12, "what is not held is dissipated"
 
 
 def test_elastic_bounce_keeps_energy():
     for pose in (FLAT, EDGE, CORNER):
-        measured, _, contacts = drop(pose, restitution=1.0, friction=0.0)
-        assert measured == pytest.approx(1.0, abs=2e-3)
-        assert contacts.dissipated == pytest.approx(0.0, abs=1e-12)
+        measured, kept, contacts = drop(pose, restitution=1.0, friction=0.0)
+        assert measured == pytest.approx(1.0, abs=2e-3) and kept == pytest.approx(1.0, abs=1e-12)
+        assert contacts.elastic_energy() == 0.0, "all of it is given back"
 
 
 def test_without_contact_one_exact_step():
@@ -175,7 +175,7 @@ def test_action_is_reaction(poses):
     go(bodies, contacts, 1e-4, 1000)
     assert bodies.velocity[0, 2] > bodies.velocity[1, 2] and contacts.count == 0, "they have parted"
     assert contacts.dissipated > 0.01 * energy
-    assert budget(bodies, contacts, (0.0, 0.0, 0.0)) == pytest.approx(energy, rel=0.01)
+    assert budget(bodies, contacts, (0.0, 0.0, 0.0)) == pytest.approx(energy, rel=1e-6)
     for now, then in zip(momenta(bodies), before, strict=True):
         assert now == pytest.approx(then, abs=1e-14)
 
@@ -222,7 +222,7 @@ def test_a_raft_does_not_heat_up():
         touched += contacts.count > 0
     assert touched > 20 and np.isfinite(velocity).all()
     elastic = contacts.elastic_energy()
-    assert bodies.kinetic_energy() + elastic + contacts.dissipated == pytest.approx(start + work, rel=0.02)
+    assert bodies.kinetic_energy() + elastic + contacts.dissipated == pytest.approx(start + work, rel=1e-3)
     assert contacts.dissipated > 0.0
     assert np.abs(bodies.position[:, 2] - 0.5).max() < 1e-4, "no kick out of the plane"
 
@@ -249,7 +249,7 @@ def test_a_rising_gate_drags_a_block_by_friction():
     go(bodies, contacts, 2e-4, 1000, load=load)
     assert bodies.velocity[0, 2] == pytest.approx(0.4, abs=0.01)
     pushed = 5.0 * (bodies.position[0, 0] - pushed)
-    assert budget(bodies, contacts) == pytest.approx(start + pushed, abs=0.01 * contacts.driven_work)
+    assert budget(bodies, contacts) == pytest.approx(start + pushed, abs=1e-4 * contacts.driven_work)
 
 
 def test_going_on_from_what_was_kept_gives_the_same_bits():

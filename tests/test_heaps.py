@@ -72,5 +72,5 @@ def test_a_heap_makes_no_energy():
         go(bodies, contacts, 2e-3, 1, time=2e-3 * step)
         assert energy() < last + 1e-5 * start
         last = energy()
-    assert last + contacts.dissipated == pytest.approx(start, rel=5e-3)
+    assert last + contacts.dissipated == pytest.approx(start, rel=1e-9)
     assert last < 0.8 * start and contacts.count > 50

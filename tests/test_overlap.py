@@ -252,3 +252,28 @@ def test_a_floe_that_hits_a_pier_is_stopped_by_its_own_thickness(height, level):
         assert force == pytest.approx(
             strength * 4.0 / 3.0 * math.sqrt(0.4 * deep) * length, rel=0.03
         )  # hit below its middle it turns
+
+
+def _stands(dice):
+    size, high = dice.uniform(0.05, 0.2), dice.uniform(0.02, 0.1)
+    if dice.random() < 0.3:
+        return CylinderShape(kind="cylinder", diameter=size, height=high)
+    angles = 2.0 * math.pi * (np.arange(6) + dice.uniform(0.0, 0.8, 6)) / 6.0
+    return PrismShape(kind="prism", points=tuple((size * math.cos(t), size * math.sin(t)) for t in angles), height=high)
+
+
+def test_what_lies_on_a_rim_is_as_deep_as_it_is():
+    """Cores beside each other point from rim to rim: along that way 0.01 mm of depth were up to 4."""
+    dice, touched = np.random.default_rng(1), 0
+    for _ in range(150):
+        shapes, deep = [_stands(dice), _stands(dice)], 10.0 ** dice.uniform(-5.0, -3.3)
+        angle, far = dice.uniform(0.0, 2.0 * math.pi), dice.uniform(0.0, 0.3)
+        high = 0.5 * (shapes[0].height + shapes[1].height) - deep
+        place = 0.5 + far * math.cos(angle), 0.5 + far * math.sin(angle), 0.5 + high
+        bodies = Bodies(shapes, [1.0, 1.0], [place, (0.5, 0.5, 0.5)])
+        contacts = Contacts(bodies, case(walls=()))
+        if contacts._prepare(bodies, bodies.fixed, 0.0, 0.0)[0]:
+            apart = normal_of(contacts._table, contacts._touch(), 0)[0]
+            assert -apart <= deep * (1.0 + 1e-9)
+            touched += apart < 0.0
+    assert touched > 50

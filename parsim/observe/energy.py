@@ -52,13 +52,14 @@ class Energy:
         out[:, :2] *= s.scheme.shares(p, at)[:, None]
         out[:, 2] = s.scheme.elastic(p, at)
         b, c = s.bodies, s.contacts
+        held, dissipated = c.energies()
         parts = [
             *map(float, s.domain.sum(out, self._unit)),
             b.kinetic_energy(),
             b.potential_energy(gravity) + floor * float(b.mass[~b.gone].sum()),
-            c.elastic_energy(),
+            held,
         ]
-        return [[s.dt, *parts, c.driven_work + s.solids.pull.work, c.dissipated, sum(parts)]]
+        return [[s.dt, *parts, c.driven_work + s.solids.pull.work, dissipated, sum(parts)]]
 
 
 @kernel

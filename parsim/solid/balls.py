@@ -27,7 +27,7 @@ from parsim.solid.search import (
 )
 from parsim.solid.separation import BALLS, gap_of_balls
 from parsim.solid.speeds import add_rate
-from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, LOSS, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, three
+from parsim.solid.table import GIVEN, HALF, LIGHT, LOAD, MATERIAL, POSITION, RUSH, SPIN, VELOCITY, three
 from parsim.solid.tanks import BEFORE, LAPSE, LOADS, LOSSES, NOW, SHEAR, SHEAR_BEFORE, SPENT
 
 CALM = 0.25  # how far, over their depth, contacts at rest may still move
@@ -207,19 +207,14 @@ def _load(m, tank, ab, n, arm, given):
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         force, moment = normal * n[k] + slip[k], n[i] * slip[j] - n[j] * slip[i]
-        lossy, torque = force - elastic * n[k], arm[0] * moment + turn[k]
-        tank[LOADS + k], tank[LOSSES + k] = force, lossy
+        torque = arm[0] * moment + turn[k]
+        tank[LOADS + k], tank[LOSSES + k] = force, force - elastic * n[k]
         tank[LOADS + 3 + k] = tank[LOSSES + 3 + k] = torque
         m[a, LOAD + k] += force
-        m[a, LOSS + k] += lossy
         m[a, LOAD + 3 + k] += torque
-        m[a, LOSS + 3 + k] += torque
         if b >= 0:
-            torque = -arm[1] * moment - turn[k]
             m[b, LOAD + k] -= force
-            m[b, LOSS + k] -= lossy
-            m[b, LOAD + 3 + k] += torque
-            m[b, LOSS + 3 + k] += torque
+            m[b, LOAD + 3 + k] -= arm[1] * moment + turn[k]
 
 
 @kernel

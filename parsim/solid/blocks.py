@@ -5,7 +5,7 @@ A block is ROWS rows of 64 numbers: RA, RB, m, radii of balls a and b, of a wall
 TOUCHING, 1 or 0; LAPSE, STORED, LOST, SHEARED, NOW, see `tanks`; ROOM, J, the most that its tank may hold; FREED, J,
 what its friction springs hold less than before; DEEP, m; NORMAL, ELASTIC, N; N (3); SLIP, friction (3), N; TURN,
 against rolling and twisting (3), N m; STRETCH, ROLL (3), m; TWIST, rad; WORK, WASTE, J, of all its loads and of what
-they dissipate in a kick.
+they dissipate in a kick; DRY, see `tanks`.
 
 Loops are over all 64, with what does not touch masked, and take roots eight at a time. What they call must be
 `inlined`; a block is handed on as a view from 0 on, for where an index may be negative no loop becomes vector code.
@@ -18,10 +18,10 @@ from parsim.solid.balls import push_of_balls, turn_of_balls, twist_of_balls
 from parsim.solid.curves import spot_area
 from parsim.solid.laws.kernels import stiffness
 
-LANES, ROWS = 64, 41
+LANES, ROWS = 64, 42
 (
     RA, RB, ROUND, LIGHT, OWN, DAMPING, MU, SHEAR, ROLLING, BY, _, _, TOUCHING, LAPSE, STORED, LOST, SHEARED, NOW, ROOM,
-    FREED, DEEP, NORMAL, ELASTIC, N, _, _, SLIP, _, _, TURN, _, _, STRETCH, _, _, ROLL, _, _, TWIST, WORK, WASTE,
+    FREED, DEEP, NORMAL, ELASTIC, N, _, _, SLIP, _, _, TURN, _, _, STRETCH, _, _, ROLL, _, _, TWIST, WORK, WASTE, DRY,
 ) = range(0, ROWS * LANES, LANES)  # fmt: skip
 _V, _A, _B, _R, _D, _NEW, _FAR, _AREA, _RIGID, _HELD, _MORE = (
     LANES * k for k in (0, 3, 6, 9, 12, 15, 18, 19, 20, 21, 22)
@@ -119,7 +119,7 @@ def respond(pair, s, law, lapse, span):
         for c in range(3):
             pair[i + N + c * LANES], pair[i + SLIP + c * LANES] = n[c], slip[c] if on else 0.0
             pair[i + STRETCH + c * LANES] = stretch[c] if on else 0.0
-        pair[i + DEEP] = deep if on else 0.0
+        pair[i + DEEP], pair[i + DRY] = deep if on else 0.0, 0.0
         room, energy = pair[i + NOW], energy if on else 0.0
         pair[i + NOW] = energy + (held * elastic * deep if on else 0.0)
         room += pair[i + NOW]
@@ -251,11 +251,12 @@ def slacken(pair, k, share):
 
 
 @kernel
-def account(pair, heat):
-    """Fill or drain the tanks of a block by its WORK; to `heat` (64,), J, adds what is lost. See `tanks._account`."""
+def account(pair, taken):
+    """Fill or drain the tanks of a block by its WORK; adds to `taken` (64,), J. See `tanks._account`."""
     for i in range(LANES):
-        heat[i] -= pair[i + WASTE]
-        there = max(pair[i + STORED] - pair[i + WORK], 0.0)
+        taken[i] -= pair[i + WORK]
+        more = max(-pair[i + WORK], 0.0) * (1.0 - pair[i + DRY])
+        there = max(pair[i + STORED] - max(pair[i + WORK], 0.0), 0.0) + more
         lost = min(max(pair[i + FREED] - pair[i + WASTE], -pair[i + LOST]), there)
         on = pair[i + NOW] > 0.0
         before, stored = pair[i + LOST], pair[i + STORED]
@@ -274,4 +275,18 @@ def answer_to(move, p, q, pair, k):
         force, turn = pair[k + NORMAL] * n[c] + f[c], pair[k + TURN + c * LANES]
         x, y = one * moment[c] + turn, two * moment[c] + turn
         total += pair[k + LIGHT] * force * force + move[p, INERT] * x * x + move[q, INERT] * y * y
+    return total
+
+
+@kernel
+def power_before(move, p, q, pair, k):
+    """Power of the loads of the pair at `k` on its balls `p` and `q` at their motion before the kick, W."""
+    n, f = (pair[k + N], pair[k + N + _Y], pair[k + N + _Z]), (pair[k + SLIP], pair[k + SLIP + _Y], pair[k + SLIP + _Z])
+    one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
+    moment = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+    total = 0.0
+    for c in range(3):
+        turn = pair[k + TURN + c * LANES]
+        total += (pair[k + NORMAL] * n[c] + f[c]) * (move[p, V + c] - move[q, V + c])
+        total += (one * moment[c] + turn) * move[p, W + c] - (two * moment[c] + turn) * move[q, W + c]
     return total

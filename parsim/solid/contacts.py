@@ -46,9 +46,9 @@ class Contacts:
     gravity_at: what pulls at a time, (3,), m/s2; that of the case if left out.
     driven: plates with half (3,), m, `centre` and `velocity` at a time (`parsim.boundary.gate.Gate`).
     shares: among whom the work is shared out (`parsim.domain.shares.Shares`), all of whom step together; None: nobody.
-    Attributes: dissipated, J, energy lost in contacts so far; driven_work, J, work of these on bodies and on water so
-    far; count, elements that touch; steps, sub-steps of the last step; residual, of hard bodies' impulses, and
-    overlap, over the least width of a body that touches, the largest so far.
+    Attributes: driven_work, J, work of what is driven on bodies and on water so far; count, elements that touch; steps,
+    sub-steps of the last step; residual, of hard bodies' impulses, and overlap, over the least width of a body that
+    touches, the largest so far.
     """
 
     def __init__(self, bodies, case, driven=(), gravity_at=None, shares=None):
@@ -71,7 +71,7 @@ class Contacts:
         self._tanks = room_for_tanks(64)
         self._marks, self._slots = room_for_slots(4096)
         self._smallest = 2.0 * thinnest(bodies) if len(bodies) else math.inf
-        self.dissipated = self.driven_work = self._time = 0.0
+        self._taken = self.driven_work = self._time = 0.0
         self.count, self.steps = 0, 0
         self._reacts = np.flatnonzero(bodies.joints.reacts)
         self._by_joints = np.array([b for b, *_ in bodies.joints.driven], int)
@@ -94,42 +94,44 @@ class Contacts:
         self._grow(time, dt)
         self._gravity = np.array(self._gravity_at(time + 0.5 * dt))
         before, held = self._tied_now() if self._reacts.size else None, bodies.held(time)
-        number, slots, reach, lost = self._prepare(bodies, held, time, dt, self.shares)
-        self.dissipated += lost
+        number, slots, reach = self._prepare(bodies, held, time, dt, self.shares)
         if self._hard:
-            self.count, self.steps, lost, work, left = advance_hard(
+            self.count, self.steps, taken, work, left = advance_hard(
                 self._table, self._touch(), number, dt, self._hard, self._steps_per_contact
             )
             self.residual = max(self.residual, left)
         else:
-            self.count, self.steps, lost, work = self._together.advance(
-                self._table, self._touch(), number, (dt, reach, self._steps_per_contact)
-            )
-        self.dissipated, self.driven_work, self._time = self.dissipated + lost, self.driven_work + work, time + dt
+            of = dt, reach, self._steps_per_contact
+            self.count, self.steps, taken, work = self._together.advance(self._table, self._touch(), number, of)
+        self._taken, self.driven_work, self._time = self._taken + taken, self.driven_work + work, time + dt
         self.overlap = max(self.overlap, deepest(self._touch(), number))
         self._remember(number, slots)
-        finish(
-            self._table,
-            dt,
-            _pose(bodies),
-            bodies.acceleration,
-            bodies.angular_acceleration,
-            bodies.contact_load,
-            bodies.spring_load,
-        )
+        turns, loads = (bodies.acceleration, bodies.angular_acceleration), (bodies.contact_load, bodies.spring_load)
+        finish(self._table, dt, _pose(bodies), *turns, *loads)
         self._grow(time, dt)
         if before:
             self._react(before, held, dt)
 
-    def elastic_energy(self):
-        """Energy, J, stored in the contacts at the present pose."""
+    def energies(self):
+        """(stored at the present pose, dissipated so far) in contacts and in springs to the world, J.
+
+        What contacts took out of the motion and do not hold is dissipated: there is no third.
+        """
         if not len(self.bodies):
-            return 0.0
+            return 0.0, self._taken
         self._gravity = np.array(self._gravity_at(self._time))
         number, *_ = self._prepare(self.bodies, self.bodies.fixed, self._time, 0.0)
-        if self._hard:
-            return float(held_by_springs(self._table, self.bodies.springs))
-        return float(elastic(self._table, self._touch(), number))
+        held = 0.0 if self._hard else float(elastic(self._table, self._touch(), number))
+        return float(held_by_springs(self._table, self.bodies.springs)) + held, self._taken - held
+
+    def elastic_energy(self):
+        """Energy, J, stored in contacts and springs at the present pose."""
+        return self.energies()[0]
+
+    @property
+    def dissipated(self):
+        """Energy, J, lost in contacts so far."""
+        return self.energies()[1]
 
     def doubts(self):
         """What was doubtful so far: messages."""
@@ -141,7 +143,7 @@ class Contacts:
 
     def kept(self):
         """What a restart needs: name -> array; friction's memory by pair and element, tanks by pair, totals."""
-        totals = np.array([self.dissipated, self.driven_work, self._time, self.overlap, self.residual])
+        totals = np.array([self._taken, self.driven_work, self._time, self.overlap, self.residual])
         return {
             "key": self._key.copy(),
             "element": self._element.copy(),
@@ -156,12 +158,11 @@ class Contacts:
         self._key, self._element, self._pair = (np.array(kept[name], np.int64) for name in ("key", "element", "pair"))
         self._stored = np.array(kept["stored"], float).reshape(-1, KEPT)
         self._memory = np.array(kept["memory"], float).reshape(-1, NORMAL - STRETCH)
-        self.dissipated, self.driven_work, self._time, self.overlap, self.residual = map(float, kept["totals"])
+        self._taken, self.driven_work, self._time, self.overlap, self.residual = map(float, kept["totals"])
         self.count = len(self._key)
 
     def _prepare(self, bodies, held, time, dt, shares=None):
-        """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m,
-        energy, J, in friction springs of what may touch no more)."""
+        """Update the kernels' copy of the bodies and list what may touch within `dt`: (pairs, slots, reach, m)."""
         m = self._table
         for row, plate in enumerate(self._driven, len(bodies)):
             m[row, table.POSITION : table.POSITION + 3] = plate.centre(time)
@@ -170,8 +171,8 @@ class Contacts:
         self._tie(bodies, time, dt)
         if len(bodies.springs):
             hasten(m, bodies.springs, dt)
-        number, reach, forgotten = self._list_pairs(bodies.planar, dt, shares)
-        return number, self._list_slots(number, reach), reach, forgotten
+        number, reach = self._list_pairs(bodies.planar, dt, shares)
+        return number, self._list_slots(number, reach), reach
 
     def _tie(self, bodies, time, dt):
         """Let the kernels know of what joints drive, and that springs pull all the time."""
@@ -244,8 +245,8 @@ class Contacts:
             sort_pairs(self._pairs, self._shift, number)
         if number > len(self._tanks):
             self._tanks = room_for_tanks(2 * number)
-        forgotten = recall_tanks(self._touch(), number, self._pair, self._stored)
-        return number, reach, forgotten
+        recall_tanks(self._touch(), number, self._pair, self._stored)
+        return number, reach
 
     def _list_slots(self, number, reach):
         if number == 0:

@@ -44,7 +44,7 @@ class Heap(NamedTuple):
 
     rows (n,): of the table of bodies; ends (pairs, 2): a and b of all pairs as rows of these tables; move, load, kept
     (n + 1, 16): see `blocks`. Of the pairs that are near, whole blocks, those with walls last: a, b, balls; wall, < 0:
-    none; number, of the pair, -1: none; pair: their blocks. scratch: of one block; heat (64,), J; count (2,): blocks
+    none; number, of the pair, -1: none; pair: their blocks. scratch: of one block; taken (64,), J; count (2,): blocks
     without walls, all. law: (its number, curvature, rolling or not)."""
 
     rows: np.ndarray
@@ -58,7 +58,7 @@ class Heap(NamedTuple):
     number: np.ndarray
     pair: np.ndarray
     scratch: np.ndarray
-    heat: np.ndarray
+    taken: np.ndarray
     count: np.ndarray
     law: tuple
 

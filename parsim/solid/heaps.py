@@ -35,8 +35,7 @@ from parsim.solid.heap_tables import hand_back, heap_of, list_near, store
 from parsim.solid.laws.law import SPOT
 from parsim.solid.search import FEATURE
 from parsim.solid.separation import BALLS
-from parsim.solid.tanks import LAPSE, ROUNDING, SHEAR, share_within
-from parsim.solid.tanks import NOW as HELD
+from parsim.solid.tanks import EMPTY, LAPSE, ROUNDING, share_within, stopping_share
 
 _LIFE = 40  # sub-steps that a list of what is near is to last
 _ROOM = 1e-3  # of the radius of the first ball, by which it reaches at least
@@ -57,7 +56,7 @@ def is_heap(m, touch, island):
 
 @kernel
 def advance_heap(m, touch, island, dt, longest, touching):
-    """Move a heap over `dt`, s, in sub-steps of `longest`, s, at most: (touching, sub-steps, energy dissipated, J).
+    """Move a heap over `dt`, s, in sub-steps of `longest`, s, at most: (touching, sub-steps, energy it loses, J).
 
     `touching`: how many pairs do so at the start, where their forces are known; `island`: (rows, how many are its own,
     pairs).
@@ -89,14 +88,12 @@ def advance_heap(m, touch, island, dt, longest, touching):
     _drift(heap, pending)
     store(touch, heap)
     hand_back(m, heap)
-    lost = 0.0
+    taken = 0.0
     for i in range(LANES):
-        lost += heap.heat[i]
+        taken += heap.taken[i]
     for c in which:
         touch.tanks[c, LAPSE] = pending
-        if touch.tanks[c, HELD] > 0.0:
-            lost -= touch.tanks[c, SHEAR]
-    return touching, steps, lost
+    return touching, steps, taken
 
 
 @kernel
@@ -163,7 +160,7 @@ def _restrain(heap, span):
     if over:
         _lessen(heap, span)
     for block in range(heap.count[1]):
-        blocks.account(_block(heap, block)[2], heap.heat)
+        blocks.account(_block(heap, block)[2], heap.taken)
 
 
 @kernel
@@ -205,6 +202,10 @@ def _lessen(heap, span):
                 own = 0.5 * span * span * blocks.answer_to(heap.move, p, q, pair, i)
                 if pair[i + WORK] > pair[i + STORED] + ROUNDING * own:
                     share = share_within(pair[i + WORK], own, pair[i + STORED], rounds)
+                    if pair[i + STORED] <= EMPTY * own:
+                        before = span * blocks.power_before(heap.move, p, q, pair, i)
+                        stop = stopping_share(pair[i + WORK], own, before)
+                        share, pair[i + blocks.DRY] = (stop, 1.0) if stop < share else (share, pair[i + blocks.DRY])
                     blocks.load_pair(load, p, q, pair, i, share - 1.0)
                     blocks.slacken(pair, i, share)
                     over, stirred[p], stirred[q] = True, rounds + 1, rounds + 1

@@ -270,7 +270,7 @@ def foresee(m, b, dt):
 
 @kernel
 def kick_involved(m, rows, dt):
-    """Kick these bodies, their MEAN known; returns (energy dissipated, work on them of what is driven), J."""
+    """Kick these bodies, their MEAN known; returns (what drag of springs takes, work on them of what is driven), J."""
     lost, work = 0.0, 0.0
     for b in rows:
         for k in range(6):

@@ -86,11 +86,11 @@ def begin_substep(m, touch, island, share, when, pressed, out):
 
 @kernel
 def end_substep(m, touch, island, found, times):
-    """Kick by the loads found: (elements that touch, energy in friction springs, heat, work of what is driven)."""
+    """Kick by the loads found: (elements that touch, energy taken out of the motion, work of what is driven, J)."""
     touching = take_loads(m, touch, island, found, times)
-    shear, spent = restrain(m, touch, island[2], island[0], times[1])
-    heat, work = kick_involved(m, island[0], times[1])
-    return touching, shear, heat + spent, work
+    taken = restrain(m, touch, island[2], island[0], times[1])
+    dragged, work = kick_involved(m, island[0], times[1])
+    return touching, taken + dragged, work
 
 
 def sizes_of(islands):

@@ -12,16 +12,16 @@ from parsim.solid.laws.kernels import coefficients
 from parsim.solid.motion import alone, drift_driven, drift_involved, driven_now, kick_involved, set_back
 from parsim.solid.rates import longest_step
 from parsim.solid.search import AREA, CRUSHED, DEPTH, FIRST, LAST, ROLL, STRETCH, TWIST, A, B
-from parsim.solid.springs import held_by_springs, rate_springs
+from parsim.solid.springs import rate_springs
 from parsim.solid.table import LOAD, TOTAL, three
-from parsim.solid.tanks import LAPSE, SHEAR, STORED, restrain
+from parsim.solid.tanks import LAPSE, STORED, restrain
 from parsim.solid.touch import measure, normal_of
 
 
 @kernel
 def advance(m, touch, number, dt, reach, steps_per_contact):
-    """Move all bodies over `dt`, s; (touching elements, most sub-steps of any, energy dissipated, work of what is
-    driven).
+    """Move all bodies over `dt`, s; (touching elements, most sub-steps of any, energy taken out of the motion by
+    contacts and by the drag of springs, work of what is driven, J).
 
     Each island on its own, in sub-steps of equal length while something touches; until the first touch, as long as
     nothing can touch. What is driven moves with each island that it may touch, and then for itself.
@@ -52,8 +52,8 @@ def advance_islands(m, touch, islands, some, of, notes):
     """Move the islands `some`, numbers; of: the step, s, the reach, m, and steps_per_contact."""
     for k in some:
         island = enter(m, islands, k, notes)
-        touching, steps, lost, work = _advance(m, touch, island, of[0], of[1], of[2])
-        leave(m, islands, k, (touching, steps, lost, work), notes)
+        touching, steps, taken, work = _advance(m, touch, island, of[0], of[1], of[2])
+        leave(m, islands, k, (touching, steps, taken, work), notes)
 
 
 @kernel
@@ -71,9 +71,8 @@ def enter(m, islands, k, notes):
 def leave(m, islands, k, found, notes):
     """Note what an island has given to its guests, and what was `found` of it: see `isolate`."""
     _swap(m, islands, k, notes[2])
-    touching, steps, lost, work = found
     told = notes[1]
-    told[k, 0], told[k, 1], told[k, 2], told[k, 3] = touching, steps, lost, work
+    told[k, 0], told[k, 1], told[k, 2], told[k, 3] = found
 
 
 @kernel
@@ -89,39 +88,39 @@ def _swap(m, islands, k, given):
 def conclude(m, islands, dt, notes):
     """Move what is driven over the step, and add up, in the order of the islands, what `advance` returns."""
     driven, told, given = notes
-    touching, most, lost, work = 0, 1, 0.0, 0.0
+    touching, most, taken, work = 0, 1, 0.0, 0.0
     set_back(m, driven)
     drift_driven(m, dt)
     for k in range(len(told)):
         touching, most = touching + int(told[k, 0]), max(most, int(told[k, 1]))
-        lost, work = lost + told[k, 2], work + told[k, 3]
+        taken, work = taken + told[k, 2], work + told[k, 3]
         for j in range(islands.own[k], islands.last[k]):
             for i in range(6):
                 m[islands.rows[j], TOTAL + i] += given[j, i]
-    return touching, most, lost, work
+    return touching, most, taken, work
 
 
 @kernel
 def _advance(m, touch, island, dt, reach, steps_per_contact):
     """Move one island over `dt`, s; what `advance` returns of it."""
     rows, _, which = island
-    lost, steps, work = sheared(touch, which), 0, 0.0
+    taken, steps, work = 0.0, 0, 0.0
     touching = press(m, touch, island, 0.0, 0.0)
     longest, on_springs = longest_step(m, touch, island, steps_per_contact, reach)
     if is_heap(m, touch, island):
-        touching, steps, heat = advance_heap(m, touch, island, dt, longest, touching)
-        return touching, steps, lost + heat, 0.0
-    rest, pending, shear = dt, 0.0, 0.0
+        touching, steps, taken = advance_heap(m, touch, island, dt, longest, touching)
+        return touching, steps, taken, 0.0
+    rest, pending = dt, 0.0
     while rest > 0.0:
         span = span_of(m, touch, which, (dt, rest, pending, longest), touching > 0 or on_springs)
         drift_involved(m, rows, pending + 0.5 * span)
         touching = press(m, touch, island, pending + 0.5 * span, span)
-        shear, spent = restrain(m, touch, which, rows, span)
-        heat, by_driven = kick_involved(m, rows, span)
-        lost, work, steps = lost + (heat + spent), work + by_driven, steps + 1
+        by_pairs = restrain(m, touch, which, rows, span)
+        dragged, by_driven = kick_involved(m, rows, span)
+        taken, work, steps = taken + (by_pairs + dragged), work + by_driven, steps + 1
         rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
     come_to_end(m, touch, island, pending)
-    return touching, steps, lost - shear, work
+    return touching, steps, taken, work
 
 
 @kernel
@@ -146,20 +145,9 @@ def come_to_end(m, touch, island, pending):
 
 
 @kernel
-def sheared(touch, which):
-    """Energy in the friction springs of these pairs, J."""
-    energy = 0.0
-    for c in which:
-        energy += touch.tanks[c, SHEAR]
-    return energy
-
-
-@kernel
 def elastic(m, touch, number):
-    """Energy, J, that pairs can give back at the present pose, what their springs hold, at most their tanks; and what
-    springs to the world hold."""
-    pairs, slots, tanks = touch.pairs, touch.slots, touch.tanks
-    energy = held_by_springs(m, touch.springs)
+    """Energy, J, that pairs can give back at the present pose: what their springs hold, at most their tanks."""
+    pairs, slots, tanks, energy = touch.pairs, touch.slots, touch.tanks, 0.0
     for c in range(number):
         apart, x, y, z = normal_of(m, touch, c)
         area = measure(m, touch, c, (x, y, z), apart) if apart < 0.0 else 0.0

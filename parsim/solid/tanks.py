@@ -8,12 +8,16 @@ its forces become smaller. Kinetic energy and tanks together thus never grow, bu
 the geometry and the sub-step. Such accounts are known from haptic interfaces (Hannaford & Ryu 2002,
 doi 10.1109/70.988969).
 
-Columns of `tanks` (n, 25), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
+A pair whose tank has run dry by such jumps still bears its load, without give: what comes closer stops, and what that
+takes is lost. While it gave the speed back, kick by kick, stones of a heap rocked on such contacts for ever.
+
+Columns of `tanks` (n, 26), a row per pair: STORED, J; LOST, dissipated of late, J, as friction springs and dashpots
 only dissipate over several kicks; SHEAR, J, that of its friction springs, and LAPSE, s, by which their stretch is
 behind the pose; BEFORE, NOW, potential at the last two places, J; SHEAR_BEFORE; WORK of the pair's forces in this kick,
 J; LOADS and LOSSES (6 each), force and torque about the centre of body a, N and N m, and their dissipating part; SHARE
 of its stiffness that a narrow contact has; BEND, RADIUS, m, and DEEP, m, of what touches: how it is curved
-(`laws.law.FLAT` and so on), and how deep it is; SPENT, by crushing since the kick before, J.
+(`laws.law.FLAT` and so on), and how deep it is; SPENT, by crushing since the kick before, J; DRY, 1 where it stops what
+comes closer in this kick.
 """
 
 import math
@@ -25,41 +29,47 @@ from parsim.machine.jit import kernel
 from parsim.solid.motion import answer, foresee
 from parsim.solid.search import CRUSHED, FIRST, KEY, LAST, STRETCH, A, B
 from parsim.solid.separation import between
-from parsim.solid.table import INVERSE, INVOLVED, LIGHT, LOAD, LOSS, MEAN, ROLE, STIRRED, is_tied, three, turn_at
+from parsim.solid.table import (
+    INVERSE,
+    INVOLVED,
+    LIGHT,
+    LOAD,
+    MEAN,
+    ROLE,
+    SPIN,
+    STIRRED,
+    VELOCITY,
+    is_tied,
+    three,
+    turn_at,
+)
 
 STORED, LOST, SHEAR, LAPSE, BEFORE, NOW, SHEAR_BEFORE, WORK, LOADS, LOSSES = 0, 1, 2, 3, 4, 5, 6, 7, 8, 14
-SHARE, BEND, RADIUS, DEEP, SPENT = 20, 21, 22, 23, 24
+SHARE, BEND, RADIUS, DEEP, SPENT, DRY = 20, 21, 22, 23, 24, 25
 KEPT = 4  # columns, the first, that last from step to step
 ROUNDS, LAST_ROUND = 10, 100  # of making forces smaller that depend on each other: see `share_within`
+EMPTY = 1e-3  # of the energy that a pair's forces would give to bodies at rest, up to which its tank counts as dry
 ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
 def room_for_tanks(count):
     """Empty tanks of `count` pairs."""
-    return np.zeros((count, 25))
+    return np.zeros((count, 26))
 
 
 @kernel
 def recall_tanks(touch, number, key, stored):
-    """Empty the first `number` tanks but for what is `stored` (n, KEPT) under their keys, in order.
-
-    Returns the energy, J, in friction springs of pairs that are no more.
-    """
+    """Empty the first `number` tanks but for what is `stored` (n, KEPT) under their keys, in order."""
     pairs, tanks = touch.pairs, touch.tanks
-    old, gone = 0, 0.0
+    old = 0
     for c in range(number):
         tanks[c, :] = 0.0
         while old < key.size and key[old] < pairs[c, KEY]:
-            gone += stored[old, SHEAR]
             old += 1
         if old < key.size and key[old] == pairs[c, KEY]:
             for k in range(KEPT):
                 tanks[c, k] = stored[old, k]
             old += 1
-    while old < key.size:
-        gone += stored[old, SHEAR]
-        old += 1
-    return gone
 
 
 @kernel
@@ -69,7 +79,7 @@ def load_pair(m, touch, c, potential, shear, loads, losses, spent):
     spent: what it has crushed since it was last looked at, J.
     """
     tanks = touch.tanks
-    tanks[c, SPENT] += spent
+    tanks[c, SPENT], tanks[c, DRY] = tanks[c, SPENT] + spent, 0.0
     tanks[c, BEFORE], tanks[c, NOW] = tanks[c, NOW], potential
     tanks[c, SHEAR_BEFORE], tanks[c, SHEAR] = tanks[c, SHEAR], shear
     for k in range(6):
@@ -81,14 +91,13 @@ def load_pair(m, touch, c, potential, shear, loads, losses, spent):
 def restrain(m, touch, which, rows, span):
     """Make loads smaller where in the coming kick of `span`, s, they would take more from a tank than it holds.
 
-    Leaves the MEAN of all bodies; returns the energy in friction springs, and what crushing has taken, J. `which`:
-    pairs, of these rows. 0.1 us a pair that touches, where nothing is too large.
+    Leaves the MEAN of all bodies; returns what the loads take out of the motion, J. `which`: pairs, of these rows.
+    0.1 us a pair that touches, where nothing is too large.
     """
-    pairs, shift, tanks, spent = touch.pairs, touch.shift, touch.tanks, 0.0
+    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
     for c in which:
-        crushed, tanks[c, SPENT] = min(tanks[c, SPENT], tanks[c, STORED]), 0.0
-        tanks[c, STORED] = min(tanks[c, STORED] - crushed, tanks[c, BEFORE] + tanks[c, NOW])
-        spent += crushed
+        left, tanks[c, SPENT] = max(tanks[c, STORED] - tanks[c, SPENT], 0.0), 0.0
+        tanks[c, STORED] = min(left, tanks[c, BEFORE] + tanks[c, NOW])
     for b in rows:
         m[b, STIRRED] = 0.0
     rounds, over = 0, True
@@ -103,13 +112,16 @@ def restrain(m, touch, which, rows, span):
             tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
             if tanks[c, WORK] > tanks[c, STORED] + ROUNDING * own:
                 over, share = True, share_within(tanks[c, WORK], own, tanks[c, STORED], rounds)
+                if tanks[c, STORED] <= EMPTY * own:
+                    stop = stopping_share(tanks[c, WORK], own, span * _power_before(m, touch, c))
+                    share, tanks[c, DRY] = (stop, 1.0) if stop < share else (share, tanks[c, DRY])
                 _apply(m, touch, c, share - 1.0)
                 _slacken(touch, c, share)
                 for b in (pairs[c, A], pairs[c, B]):
                     if b >= 0 and m[b, ROLE] == INVOLVED:
                         m[b, STIRRED] = rounds + 1.0
         rounds += 1
-    return _account(m, touch, which, span), spent
+    return _account(m, touch, which, span)
 
 
 @kernel
@@ -132,19 +144,20 @@ def _slacken(touch, c, share):
 
 @kernel
 def _account(m, touch, which, span):
-    """Fill or drain the tanks by what the loads do in this kick; the energy in friction springs, J."""
-    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
-    shear = 0.0
+    """Fill or drain the tanks by what the loads do in this kick; what they take out of the motion, J."""
+    pairs, shift, tanks, taken = touch.pairs, touch.shift, touch.tanks, 0.0
     for c in which:
         if tanks[c, NOW] > 0.0:
             room = tanks[c, BEFORE] + tanks[c, NOW]
             lost = tanks[c, SHEAR_BEFORE] - tanks[c, SHEAR] - _work(m, pairs, shift, tanks, c, LOSSES, span)[0]
-            there = max(tanks[c, STORED] - tanks[c, WORK], 0.0)
+            there = tanks[c, STORED]
+            if tanks[c, DRY] == 0.0 or tanks[c, WORK] > 0.0:
+                there = max(there - tanks[c, WORK], 0.0)
             lost = min(max(lost, -tanks[c, LOST]), there)  # what was not there can't be lost, nor then be given back
             tanks[c, LOST] = min(tanks[c, LOST] + lost, room)
             tanks[c, STORED] = there - lost
-            shear += tanks[c, SHEAR]
-    return shear
+            taken -= tanks[c, WORK]
+    return taken
 
 
 @kernel
@@ -161,6 +174,31 @@ def share_within(work, own, stored, rounds):
     root = math.sqrt(other * other + 4.0 * own * stored)
     share = 2.0 * stored / (root + other) if other > 0.0 else (root - other) / (2.0 * own)
     return share * max(share ** max(rounds - ROUNDS, 0), 0.5)
+
+
+@kernel
+def stopping_share(work, own, before):
+    """Share of loads that stops what comes closer by the end of the kick; inf where nothing does. See `share_within`.
+
+    before: what the loads would do in the kick at the motion before it, J.
+    """
+    return max(1.0 + (0.5 * before - work) / own, 0.0) if before < 0.0 else math.inf
+
+
+@kernel
+def _power_before(m, touch, c):
+    """Power of the loads of pair `c` at the motion before the kick, W."""
+    pairs, f = touch.pairs, _six(touch.tanks, c, LOADS)
+    a, b = pairs[c, A], pairs[c, B]
+    power = _power_now(m, a, f)
+    return power + _power_now(m, b, _reaction(m, a, b, three(touch.shift, c, 0), f)) if b >= 0 else power
+
+
+@kernel
+def _power_now(m, b, f):
+    """Power of the loads `f` on body `b` before the kick, W."""
+    v, w = three(m, b, VELOCITY), three(m, b, SPIN)
+    return f[0] * v[0] + f[1] * v[1] + f[2] * v[2] + (f[3] * w[0] + f[4] * w[1] + f[5] * w[2])
 
 
 @kernel
@@ -203,13 +241,11 @@ def _reaction(m, a, b, by, f):
 @kernel
 def _apply(m, touch, c, share):
     """Add this share of the loads of pair `c` to those of its bodies."""
-    pairs, shift, tanks = touch.pairs, touch.shift, touch.tanks
-    a, b, by = pairs[c, A], pairs[c, B], three(shift, c, 0)
-    for at, to in ((LOADS, LOAD), (LOSSES, LOSS)):
-        f = _six(tanks, c, at)
+    pairs, f = touch.pairs, _six(touch.tanks, c, LOADS)
+    a, b = pairs[c, A], pairs[c, B]
+    for k in range(6):
+        m[a, LOAD + k] += share * f[k]
+    if b >= 0:
+        g = _reaction(m, a, b, three(touch.shift, c, 0), f)
         for k in range(6):
-            m[a, to + k] += share * f[k]
-        if b >= 0:
-            g = _reaction(m, a, b, by, f)
-            for k in range(6):
-                m[b, to + k] += share * g[k]
+            m[b, LOAD + k] += share * g[k]

@@ -23,7 +23,7 @@ from parsim.solid.parcels import (
 )
 from parsim.solid.search import FEATURE
 from parsim.solid.separation import BALLS
-from parsim.solid.substeps import advance, advance_islands, come_to_end, conclude, enter, isolate, leave, sheared
+from parsim.solid.substeps import advance, advance_islands, come_to_end, conclude, enter, isolate, leave
 
 _BY_ALL = -1  # of pairs that every part finds
 
@@ -70,27 +70,27 @@ class Together:
         """Move island `k`, whose pairs are shared out at these `ends`, as `substeps._advance` does."""
         (of, notes), shares, numbers = given, self._shares, np.diff(ends)
         island, (dt, _, steps_per_contact) = enter(m, islands, k, notes), of
-        share, which = island[2][ends[shares.own] : ends[shares.own + 1]], island[2]
+        share = island[2][ends[shares.own] : ends[shares.own + 1]]
 
         def all_of(found):
             return shares.gather(found, numbers * found.shape[1]).reshape(-1, found.shape[1])
 
-        lost, steps, work, out = sheared(touch, which), 0, 0.0, np.empty((len(share), LOADS))
+        taken, steps, work, out = 0.0, 0, 0.0, np.empty((len(share), LOADS))
         press_share(m, touch, island[0], share, (0.0, 0.0), out)
         touching = take_loads(m, touch, island, all_of(out), (0.0, 0.0))
         rates = np.empty((len(share), RATES))
         rate_share(m, touch, share, of, rates)
         longest, on_springs = take_rates(m, touch, island, all_of(rates), steps_per_contact)
-        rest, pending, shear = dt, 0.0, 0.0
+        rest, pending = dt, 0.0
         while rest > 0.0:
             pressed = touching > 0 or on_springs
             span = begin_substep(m, touch, island, share, (dt, rest, pending, longest), pressed, out)
             times = pending + 0.5 * span, span
-            touching, shear, heat, by_driven = end_substep(m, touch, island, all_of(out), times)
-            lost, work, steps = lost + heat, work + by_driven, steps + 1
+            touching, more, by_driven = end_substep(m, touch, island, all_of(out), times)
+            taken, work, steps = taken + more, work + by_driven, steps + 1
             rest, pending = (rest - span if span < rest else 0.0), 0.5 * span
         come_to_end(m, touch, island, pending)
-        leave(m, islands, k, (touching, steps, lost - shear, work), notes)
+        leave(m, islands, k, (touching, steps, taken, work), notes)
 
     def _tell(self, m, touch, islands, notes, owner):
         """Tell each other what has become of the islands that each has moved."""

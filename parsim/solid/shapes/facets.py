@@ -53,6 +53,28 @@ def normal_of_face(forms, b, face):
 
 
 @kernel
+def faces_from(forms, b):
+    """(first flat face of body `b`, the one behind the last); a cylinder has its side after its ends."""
+    shape = forms.shape[b]
+    if shape == _SPHERE or shape == _DISC or shape == _MESH:
+        return 0, 0
+    if shape == _BOX:
+        return 0, 6
+    if shape == _CYLINDER or shape == _DILATED:
+        return 0, 3 if shape == _CYLINDER else 2
+    return (2 if shape == _POLYGON else 0), 2 + len(sides_of(forms, b))
+
+
+@kernel
+def normal_towards(forms, b, face, d):
+    """The normal of a face of `faces_from`; of a cylinder's side that which looks most along `d` (3,)."""
+    if forms.shape[b] != _CYLINDER or face < 2:
+        return normal_of_face(forms, b, face)
+    across = math.sqrt(d[0] * d[0] + d[1] * d[1])
+    return (d[0] / across, d[1] / across, 0.0) if across > 0.0 else (1.0, 0.0, 0.0)
+
+
+@kernel
 def corners_of(forms, b, face):
     """How many corners such a face has; those that are round have a polygon of the same area."""
     shape = forms.shape[b]
