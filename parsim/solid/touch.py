@@ -72,6 +72,8 @@ def measure(m, touch, c, n, apart):
     ramp, narrow = ramp_of(m, a, b), 1.0
     if pairs[c, FEATURE] < ROUND_A:
         narrow = tanks[c, SHARE] = overlap_share(m, touch.forms, (a, b), by, n, 4.0 * ramp)
+        if narrow == 0.0:  # apart, along another direction than that kept over the step
+            return 0.0
     faces = faces_of(m, touch.forms, (a, b), by, n, curve[0] == FLAT)
     one, two = _shares(m, touch, a, b, n)
     rim_a = ramp, one, narrow, tanks[c, DEEP], faces, False
