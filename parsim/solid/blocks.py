@@ -266,27 +266,16 @@ def account(pair, taken):
 
 @kernel
 def answer_to(move, p, q, pair, k):
-    """Force times acceleration by the loads of the pair at `k` on its balls `p` and `q`, W/s."""
+    """(force times acceleration by the loads of the pair at `k` on its balls `p` and `q`, W/s; power of these at the
+    motion before the kick, W)."""
     n, f = (pair[k + N], pair[k + N + _Y], pair[k + N + _Z]), (pair[k + SLIP], pair[k + SLIP + _Y], pair[k + SLIP + _Z])
     one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
     moment = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
-    total = 0.0
+    total, power = 0.0, 0.0
     for c in range(3):
         force, turn = pair[k + NORMAL] * n[c] + f[c], pair[k + TURN + c * LANES]
         x, y = one * moment[c] + turn, two * moment[c] + turn
         total += pair[k + LIGHT] * force * force + move[p, INERT] * x * x + move[q, INERT] * y * y
-    return total
-
-
-@kernel
-def power_before(move, p, q, pair, k):
-    """Power of the loads of the pair at `k` on its balls `p` and `q` at their motion before the kick, W."""
-    n, f = (pair[k + N], pair[k + N + _Y], pair[k + N + _Z]), (pair[k + SLIP], pair[k + SLIP + _Y], pair[k + SLIP + _Z])
-    one, two = 0.5 * pair[k + DEEP] - pair[k + RA], pair[k + RB] - 0.5 * pair[k + DEEP]
-    moment = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
-    total = 0.0
-    for c in range(3):
-        turn = pair[k + TURN + c * LANES]
-        total += (pair[k + NORMAL] * n[c] + f[c]) * (move[p, V + c] - move[q, V + c])
-        total += (one * moment[c] + turn) * move[p, W + c] - (two * moment[c] + turn) * move[q, W + c]
-    return total
+        power += force * (move[p, V + c] - move[q, V + c])
+        power += x * move[p, W + c] - y * move[q, W + c]
+    return total, power

@@ -35,7 +35,7 @@ from parsim.solid.heap_tables import hand_back, heap_of, list_near, store
 from parsim.solid.laws.law import SPOT
 from parsim.solid.search import FEATURE
 from parsim.solid.separation import BALLS
-from parsim.solid.tanks import EMPTY, LAPSE, ROUNDING, share_within, stopping_share
+from parsim.solid.tanks import LAPSE, ROUNDING, share_within
 
 _LIFE = 40  # sub-steps that a list of what is near is to last
 _ROOM = 1e-3  # of the radius of the first ball, by which it reaches at least
@@ -199,13 +199,11 @@ def _lessen(heap, span):
                 p, q = a[i], b[i]
                 if pair[i + NOW] == 0.0 or pair[i + WORK] <= pair[i + STORED]:
                     continue
-                own = 0.5 * span * span * blocks.answer_to(heap.move, p, q, pair, i)
+                answer, power = blocks.answer_to(heap.move, p, q, pair, i)
+                own = 0.5 * span * span * answer
                 if pair[i + WORK] > pair[i + STORED] + ROUNDING * own:
-                    share = share_within(pair[i + WORK], own, pair[i + STORED], rounds)
-                    if pair[i + STORED] <= EMPTY * own:
-                        before = span * blocks.power_before(heap.move, p, q, pair, i)
-                        stop = stopping_share(pair[i + WORK], own, before)
-                        share, pair[i + blocks.DRY] = (stop, 1.0) if stop < share else (share, pair[i + blocks.DRY])
+                    share, dry = share_within(pair[i + WORK], own, pair[i + STORED], span * power, rounds)
+                    pair[i + blocks.DRY] = max(pair[i + blocks.DRY], dry)
                     blocks.load_pair(load, p, q, pair, i, share - 1.0)
                     blocks.slacken(pair, i, share)
                     over, stirred[p], stirred[q] = True, rounds + 1, rounds + 1

@@ -48,7 +48,7 @@ STORED, LOST, SHEAR, LAPSE, BEFORE, NOW, SHEAR_BEFORE, WORK, LOADS, LOSSES = 0, 
 SHARE, BEND, RADIUS, DEEP, SPENT, DRY = 20, 21, 22, 23, 24, 25
 KEPT = 4  # columns, the first, that last from step to step
 ROUNDS, LAST_ROUND = 10, 100  # of making forces smaller that depend on each other: see `share_within`
-EMPTY = 1e-3  # of the energy that a pair's forces would give to bodies at rest, up to which its tank counts as dry
+_EMPTY = 1e-3  # of the energy that a pair's forces would give to bodies at rest, up to which its tank counts as dry
 ROUNDING = 1e-12  # of the energy that a pair's forces would give to bodies at rest
 
 
@@ -111,10 +111,9 @@ def restrain(m, touch, which, rows, span):
                 continue
             tanks[c, WORK], own = _work(m, pairs, shift, tanks, c, LOADS, span)
             if tanks[c, WORK] > tanks[c, STORED] + ROUNDING * own:
-                over, share = True, share_within(tanks[c, WORK], own, tanks[c, STORED], rounds)
-                if tanks[c, STORED] <= EMPTY * own:
-                    stop = stopping_share(tanks[c, WORK], own, span * _power_before(m, touch, c))
-                    share, tanks[c, DRY] = (stop, 1.0) if stop < share else (share, tanks[c, DRY])
+                before = span * _power_before(m, touch, c)
+                over, (share, dry) = True, share_within(tanks[c, WORK], own, tanks[c, STORED], before, rounds)
+                tanks[c, DRY] = max(tanks[c, DRY], dry)
                 _apply(m, touch, c, share - 1.0)
                 _slacken(touch, c, share)
                 for b in (pairs[c, A], pairs[c, B]):
@@ -161,28 +160,24 @@ def _account(m, touch, which, span):
 
 
 @kernel
-def share_within(work, own, stored, rounds):
-    """Largest share of loads whose work is `stored`, as share (work - own) + share^2 own; all in J.
+def share_within(work, own, stored, before, rounds):
+    """(largest share of loads whose work is `stored`, as share (work - own) + share^2 own, all in J; 1 if it is less).
+
+    Where next to nothing is stored it is less: what comes closer, by what the loads would do at the motion `before` the
+    kick, stops by its end.
 
     After ROUNDS a growing power of it, at least half: forces on both sides of a body, far too large, hold each other up
     and go down by little in each. Nothing after LAST_ROUND; when that was ROUNDS, three blocks deep in each other went
     on into each other.
     """
     if rounds >= LAST_ROUND:
-        return 0.0
+        return 0.0, 0.0
     other = work - own
     root = math.sqrt(other * other + 4.0 * own * stored)
     share = 2.0 * stored / (root + other) if other > 0.0 else (root - other) / (2.0 * own)
-    return share * max(share ** max(rounds - ROUNDS, 0), 0.5)
-
-
-@kernel
-def stopping_share(work, own, before):
-    """Share of loads that stops what comes closer by the end of the kick; inf where nothing does. See `share_within`.
-
-    before: what the loads would do in the kick at the motion before it, J.
-    """
-    return max(1.0 + (0.5 * before - work) / own, 0.0) if before < 0.0 else math.inf
+    share *= max(share ** max(rounds - ROUNDS, 0), 0.5)
+    stop = max(1.0 + (0.5 * before - work) / own, 0.0) if before < 0.0 and stored <= _EMPTY * own else math.inf
+    return (stop, 1.0) if stop < share else (share, 0.0)
 
 
 @kernel
@@ -190,14 +185,16 @@ def _power_before(m, touch, c):
     """Power of the loads of pair `c` at the motion before the kick, W."""
     pairs, f = touch.pairs, _six(touch.tanks, c, LOADS)
     a, b = pairs[c, A], pairs[c, B]
-    power = _power_now(m, a, f)
-    return power + _power_now(m, b, _reaction(m, a, b, three(touch.shift, c, 0), f)) if b >= 0 else power
+    power = _power_at(m, a, f, VELOCITY, SPIN)
+    if b >= 0:
+        power += _power_at(m, b, _reaction(m, a, b, three(touch.shift, c, 0), f), VELOCITY, SPIN)
+    return power
 
 
 @kernel
-def _power_now(m, b, f):
-    """Power of the loads `f` on body `b` before the kick, W."""
-    v, w = three(m, b, VELOCITY), three(m, b, SPIN)
+def _power_at(m, b, f, velocity, spin):
+    """Power of the loads `f` on body `b` at the motion in these columns, W."""
+    v, w = three(m, b, velocity), three(m, b, spin)
     return f[0] * v[0] + f[1] * v[1] + f[2] * v[2] + (f[3] * w[0] + f[4] * w[1] + f[5] * w[2])
 
 
@@ -215,8 +212,7 @@ def _work(m, pairs, shift, tanks, c, at, span):
 @kernel
 def _power(m, b, f):
     """(power of the loads `f` on body `b` at its MEAN, W; force times acceleration by them, W/s)."""
-    v, w = three(m, b, MEAN), three(m, b, MEAN + 3)
-    power = f[0] * v[0] + f[1] * v[1] + f[2] * v[2] + (f[3] * w[0] + f[4] * w[1] + f[5] * w[2])
+    power = _power_at(m, b, f, MEAN, MEAN + 3)
     if is_tied(m, b):
         (x, y, z), (p, q, r) = answer(m, b, f)
         return power, f[0] * x + f[1] * y + f[2] * z + (f[3] * p + f[4] * q + f[5] * r)
